@@ -24,8 +24,6 @@
 
 #include <math.h>
 
-#define LEAST_WAY 10.0 /* px: nearer corners say nothing of an edge's direction; as LEAST_START of frames.c */
-
 static float biweight(double r2)
 {
     const double w = r2 < ASJ_AGREEMENT_REACH ? 1 - r2 / ASJ_AGREEMENT_REACH : 0;
@@ -149,7 +147,8 @@ float asj_edge_agreement(const asj_match_run *run, const asj_candidate *c, const
 {
     const uint8_t *t1 = run->image[0]->l_junctions.t_junction, *t2 = run->image[1]->l_junctions.t_junction;
     const double square1 = e->x1 * e->x1 + e->y1 * e->y1, square2 = e->x2 * e->x2 + e->y2 * e->y2;
-    if (square1 < LEAST_WAY * LEAST_WAY || square2 < LEAST_WAY * LEAST_WAY || t1[c->i] || t1[d->i] || t2[c->j] || t2[d->j])
+    const double least_square = ASJ_AGREEMENT_LEAST_WAY * ASJ_AGREEMENT_LEAST_WAY;
+    if (square1 < least_square || square2 < least_square || t1[c->i] || t1[d->i] || t2[c->j] || t2[d->j])
         return 0;
     const double least = least_off_edge(run, c, d, e);
     if (least >= ASJ_AGREEMENT_REACH)

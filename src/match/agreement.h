@@ -7,6 +7,7 @@
 
 #define ASJ_AGREEMENT_PIXELS 3.0 /* px, error allowed anywhere: locations of two junctions and their map; as RAY_DISTANCE */
 #define ASJ_AGREEMENT_REACH 5.0  /* r^2 at which agreement ends: where exp(-r^2 / 2) is below a tenth */
+#define ASJ_AGREEMENT_LEAST_WAY 10.0 /* px: nearer corners say nothing of an edge's direction; as LEAST_START of frames.c */
 
 /* From c to d in image 1 and in image 2, px. */
 typedef struct asj_way {

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, who agrees with whom: the supporters of every candidate, among those at the nearest locations of image 1 and of image 2.
  *
- * Of millions of pairs a few in a hundred may agree (support_gate.c), fewer do (agreement.c), and only these are stored. When the
- * guided pass brings new candidates, those known before are only compared with the new ones.
+ * Of millions of pairs a few in a hundred may agree (support_gate.c, narrow_gate.c), fewer do (agreement.c), and only these are
+ * stored. When the guided pass brings new candidates, those known before are only compared with the new ones.
  *
  * In a fine pattern that repeats everything agrees with everything near. Where all are more than MOST_SUPPORTERS, these are shared
  * out equally among the candidates, and each keeps those at its nearest neighbours. (Two views of a grid with lines 16 px apart:
  * 71 000 of 129 000 have their whole share of 129.) */
 #include "support.h"
-#include "support_gate.h"
+#include "narrow_gate.h"
 #include "core/watch.h"
 
+#include <math.h>
 #include <string.h>
 
 #define MOST_SUPPORTERS 0x1000000 /* 128 MB */
@@ -57,6 +58,7 @@ void asj_location_index_free(asj_memory *memory, asj_location_index *index)
 typedef struct pool {
     asj_location_index index;
     asj_gate_candidates gate; /* in its order */
+    asj_narrow_maps *maps;     /* in its order, too */
     float *block;
 } pool;
 
@@ -66,13 +68,16 @@ static asj_status pool_create(const asj_match_run *run, int32_t side, uint32_t l
     if (status != ASJ_OK)
         return status;
     const size_t count = s->index.start[run->image[side]->l_junctions.location_count], room = count + ASJ_GATE_PADDING;
-    s->block = asj_allocate_zero(&run->context->memory, room, 6 * sizeof *s->block);
-    if (!s->block)
+    s->block = asj_allocate_zero(&run->context->memory, room, 8 * sizeof *s->block);
+    s->maps = asj_allocate(&run->context->memory, count, sizeof *s->maps);
+    if (!s->block || !s->maps)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
     s->gate.x = s->block;
     s->gate.y = s->block + room;
     for (size_t k = 0; k < 4; k++)
         s->gate.map[k] = s->block + (2 + k) * room;
+    s->gate.length[0] = s->block + 6 * room;
+    s->gate.length[1] = s->block + 7 * room;
     for (size_t m = 0; m < count; m++) {
         const asj_candidate *c = &run->candidates.list[s->index.order[m]];
         const asj_l_junction *l = asj_match_run_l(run, c, 1 - side);
@@ -80,6 +85,8 @@ static asj_status pool_create(const asj_match_run *run, int32_t side, uint32_t l
         s->gate.y[m] = l->y;
         for (int k = 0; k < 4; k++)
             s->gate.map[k][m] = (float)asj_candidate_map(c, side)[k];
+        asj_gate_lengths(run, c, side, &s->gate.length[0][m], &s->gate.length[1][m]);
+        s->maps[m] = asj_narrow_maps_of(run->candidates.list, s->index.order[m], side);
     }
     return ASJ_OK;
 }
@@ -88,6 +95,7 @@ static void pool_free(asj_memory *memory, pool *s)
 {
     asj_location_index_free(memory, &s->index);
     asj_release_much(memory, s->block);
+    asj_release_much(memory, s->maps);
 }
 
 /* --- who does --------------------------------------------------------------------------------------------------------------- */
@@ -110,7 +118,9 @@ typedef struct subject {
     uint32_t mine, other;   /* its L-junction in the image asked, and in the other */
     double x, y;            /* px: where it stands in the image asked */
     const double *map;      /* from there to the other */
-    asj_gate_query query;   /* without what depends on the location */
+    double cover;           /* part of the way that branches of an edge cover */
+    asj_gate_query query;   /* these two without what depends on the location */
+    asj_narrow_query narrow;
 } subject;
 
 static subject subject_of(const search *in, const asj_candidate *c)
@@ -123,17 +133,41 @@ static subject subject_of(const search *in, const asj_candidate *c)
     n.query = (asj_gate_query){.x = in->others->l[n.other].x, .y = in->others->l[n.other].y,
                                .slope = (float)(ASJ_GATE_SLOPE * tolerance * tolerance),
                                .branch = {{(float)u[0], (float)u[1]}, {(float)u[2], (float)u[3]}}};
+    for (uint32_t t = 0; t < 2; t++)
+        n.query.length[t] = (float)in->others->lengths[2 * (size_t)n.other + t].length[0];
+    n.cover = ASJ_GATE_COVER * fmax(1 - in->run->options->end_tolerance, 0);
+    n.query.cover = (float)(n.cover * n.cover);
+    n.narrow = asj_narrow_query_of(in->run->options, c, in->side);
     return n;
 }
 
 /* Agreement in 1/ASJ_SUPPORT_ONE. (x, y) is the way in the image asked, (ex, ey) in the other. */
-static uint16_t weigh(const search *in, const subject *n, const asj_candidate *d, double x, double y, double ex, double ey)
+static uint16_t weigh(const search *in, const subject *n, const asj_narrow_maps *maps, double x, double y, double ex, double ey)
 {
+    const uint32_t may = asj_narrow_gate(&n->query, &n->narrow, maps, (float)ex, (float)ey);
+    if (!may)
+        return 0;
+    const asj_candidate *d = &in->run->candidates.list[maps->candidate];
     const asj_way way = in->side == 0 ? (asj_way){x, y, ex, ey} : (asj_way){ex, ey, x, y};
-    const float w = asj_surface_agreement(in->run->options, n->c, d, &way);
-    const float v = asj_edges_through(in->others, n->other, n->query.edges, ex, ey)
+    const float w = may & ASJ_NARROW_SURFACE ? asj_surface_agreement(in->run->options, n->c, d, &way) : 0;
+    const float v = may & ASJ_NARROW_EDGE && asj_edges_through(in->others, n->other, n->query.edges, ex, ey)
         ? asj_edge_agreement(in->run, n->c, d, &way) : 0;
     return (uint16_t)((v > w ? v : w) * ASJ_SUPPORT_ONE);
+}
+
+/* Where location is asked, (x, y) from the subject. */
+static void turn_to(const search *in, subject *n, double x, double y)
+{
+    n->query.way_x = (float)x;
+    n->query.way_y = (float)y;
+    n->query.px = (float)(n->map[0] * x + n->map[1] * y);
+    n->query.py = (float)(n->map[2] * x + n->map[3] * y);
+    n->query.edges = asj_edges_through(in->asked, n->mine, in->others->t_junction[n->other] ? 0 : 3, x, y);
+    if (!n->query.edges)
+        return;
+    const double needed = n->cover * sqrt(x * x + y * y);
+    for (uint32_t t = 0; t < 2; t++)
+        n->query.least[t] = (float)(needed - (double)in->asked->lengths[2 * (size_t)n->mine + t].length[0]);
 }
 
 /* The supporters at a location, the subject's neighbour of this number; `most` of them. */
@@ -143,22 +177,17 @@ static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint3
     const double x = in->asked->location_x[location] - n->x, y = in->asked->location_y[location] - n->y;
     const uint32_t end = s->index.start[location + 1];
     uint32_t count = 0;
-    n->query.way_x = (float)x;
-    n->query.way_y = (float)y;
-    n->query.px = (float)(n->map[0] * x + n->map[1] * y);
-    n->query.py = (float)(n->map[2] * x + n->map[3] * y);
-    n->query.edges = asj_edges_through(in->asked, n->mine, in->others->t_junction[n->other] ? 0 : 3, x, y);
+    turn_to(in, n, x, y);
     for (uint32_t m = s->index.start[location]; m < end && count < most; m += ASJ_GATE_COUNT) {
         const uint32_t some = end - m < ASJ_GATE_COUNT ? end - m : ASJ_GATE_COUNT;
         uint64_t passed = in->run->context->ops->gate->pass(&n->query, &s->gate, m, some);
-        for (uint32_t at = m; passed && count < most; at++, passed >>= 1) {
-            if (!(passed & 1))
-                continue;
-            const asj_candidate *d = &in->run->candidates.list[s->index.order[at]];
+        for (; passed && count < most; passed &= passed - 1) {
+            const uint32_t at = m + (uint32_t)__builtin_ctzll(passed);
             const double ex = (double)s->gate.x[at] - (double)n->query.x, ey = (double)s->gate.y[at] - (double)n->query.y;
-            const uint16_t weight = weigh(in, n, d, x, y, ex, ey);
+            const uint16_t weight = weigh(in, n, &s->maps[at], x, y, ex, ey);
             if (weight)
-                list[count++] = (asj_supporter){d->number - 1, weight, (uint16_t)neighbour};
+                list[count++] = (asj_supporter){in->run->candidates.list[s->maps[at].candidate].number - 1, weight,
+                                                (uint16_t)neighbour};
         }
     }
     return count;

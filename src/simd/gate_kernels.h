@@ -24,7 +24,7 @@ static inline int any_of(ints mask)
 static inline uint32_t gate_four(const asj_gate_query *query, const asj_gate_candidates *list, uint32_t m)
 {
     const floats ex = floats_at(list->x + m) - query->x, ey = floats_at(list->y + m) - query->y;
-    const floats most = (float)ASJ_GATE_MOST + query->slope * (ex * ex + ey * ey);
+    const floats way = ex * ex + ey * ey, most = (float)ASJ_GATE_MOST + query->slope * way;
     const floats cx = query->px - ex, cy = query->py - ey;
     ints may = cx * cx + cy * cy <= most;
     if (any_of(may)) {
@@ -33,8 +33,11 @@ static inline uint32_t gate_four(const asj_gate_query *query, const asj_gate_can
         may &= dx * dx + dy * dy <= most;
     }
     for (uint32_t t = 0; t < 2; t++)
-        if (query->edges >> t & 1)
-            may |= magnitude(query->branch[t][0] * ey - query->branch[t][1] * ex) <= floats_of((float)ASJ_GATE_ACROSS);
+        if (query->edges >> t & 1) {
+            const floats both = query->length[t] + floats_at(list->length[1] + m);
+            may |= (magnitude(query->branch[t][0] * ey - query->branch[t][1] * ex) <= floats_of((float)ASJ_GATE_ACROSS)) &
+                   (floats_at(list->length[0] + m) >= query->least[t]) & (both * both >= query->cover * way);
+        }
     return any_of(may) ? bits_of(may) : 0;
 }
 

@@ -184,8 +184,9 @@ size_t gate_size(const subject *s)
 /* Queries of all counts and with all kinds of edges, on candidates of which about half are near. */
 asj_status run_gate(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
-    static float numbers[6][CANDIDATES + ASJ_GATE_COUNT + ASJ_GATE_PADDING];
-    const asj_gate_candidates list = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]}};
+    static float numbers[8][CANDIDATES + ASJ_GATE_COUNT + ASJ_GATE_PADDING];
+    const asj_gate_candidates list = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]},
+                                      {numbers[6], numbers[7]}};
     synth_random random = s->random;
     uint64_t *passed = output;
     (void)scratch;
@@ -193,6 +194,10 @@ asj_status run_gate(asj_context *context, const subject *s, uint16_t *scratch, v
         for (int32_t m = 0; m < CANDIDATES + ASJ_GATE_COUNT; m++)
             numbers[k][m] = (float)(k < 2 ? synth_random_between(&random, 0, 200)
                                           : synth_random_between(&random, -0.3, 0.3) + (k == 2 || k == 5));
+    for (int32_t m = 0; m < CANDIDATES + ASJ_GATE_COUNT; m++) {
+        numbers[6][m] = m % 9 ? (float)synth_random_between(&random, 0, 100) : ASJ_GATE_NO_EDGE;
+        numbers[7][m] = (float)synth_random_between(&random, 0, 100);
+    }
     for (uint32_t count = 1; count <= ASJ_GATE_COUNT; count++) {
         asj_gate_query query = {.x = 100, .y = 90, .slope = (float)synth_random_between(&random, 0, 0.5), .edges = count % 4};
         query.way_x = (float)synth_random_between(&random, -90, 90);
@@ -201,6 +206,11 @@ asj_status run_gate(asj_context *context, const subject *s, uint16_t *scratch, v
         query.py = query.way_y + (float)synth_random_between(&random, -20, 20);
         for (int32_t t = 0; t < 4; t++)
             query.branch[t / 2][t % 2] = (float)synth_random_between(&random, -1, 1);
+        for (int32_t t = 0; t < 2; t++) {
+            query.length[t] = (float)synth_random_between(&random, 0, 60);
+            query.least[t] = (float)synth_random_between(&random, -50, 100);
+        }
+        query.cover = (float)synth_random_between(&random, 0, 1);
         passed[count - 1] = context->ops->gate->pass(&query, &list, (uint32_t)(synth_random_bits(&random) % CANDIDATES), count);
     }
     return ASJ_OK;

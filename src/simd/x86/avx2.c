@@ -7,6 +7,7 @@
 #include "colour.h"
 #include "discs.h"
 #include "edges.h"
+#include "gates.h"
 #include "lines.h"
 #include "patches.h"
 #include "strips.h"

@@ -5,6 +5,7 @@
 #endif
 #include "avx512_vectors.h" /* before kernels.h */
 #include "simd/kernels.h"
+#include "gates512.h"
 #include "lines512.h"
 #include "simd/variants.h"
 
@@ -13,4 +14,5 @@ void asj_fill_avx512(const asj_ops *ops)
     fill_kernels(ops);
     ops->line->sums = line_sums_avx512;
     ops->line->profile = line_profile_avx512;
+    ops->gate->pass = support_gate_avx512;
 }

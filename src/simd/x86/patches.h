@@ -3,7 +3,6 @@
 #ifndef ASJ_SRC_X86_PATCHES_H
 #define ASJ_SRC_X86_PATCHES_H
 
-#include "match/support_gate.h"
 #include "match/patch.h"
 
 #include <immintrin.h>
@@ -180,50 +179,6 @@ static void patch_normalise_avx2(const uint16_t *grey, int32_t size, int16_t *un
         const __m256i high = high_halves(_mm256_cvtepu16_epi32(_mm256_extracti128_si256(g, 1)), count, shift, scale);
         v_store(unit + i, _mm256_permute4x64_epi64(_mm256_packs_epi32(low, high), 0xd8));
     }
-}
-
-static inline __m256 squares(__m256 x, __m256 y)
-{
-    return _mm256_add_ps(_mm256_mul_ps(x, x), _mm256_mul_ps(y, y));
-}
-
-/* a x + b y with the numbers at a and b */
-static inline __m256 turned(const float *a, const float *b, float x, float y)
-{
-    const __m256 p = _mm256_mul_ps(_mm256_loadu_ps(a), _mm256_set1_ps(x)), q = _mm256_mul_ps(_mm256_loadu_ps(b), _mm256_set1_ps(y));
-    return _mm256_add_ps(p, q);
-}
-
-/* Eight candidates; few maps of c lead near any of them, so their own maps are seldom needed. */
-static inline unsigned gate_eight(const asj_gate_query *query, const asj_gate_candidates *list, uint32_t m)
-{
-    const __m256 ex = _mm256_sub_ps(_mm256_loadu_ps(list->x + m), _mm256_set1_ps(query->x));
-    const __m256 ey = _mm256_sub_ps(_mm256_loadu_ps(list->y + m), _mm256_set1_ps(query->y));
-    const __m256 most = _mm256_add_ps(_mm256_set1_ps((float)ASJ_GATE_MOST),
-                                      _mm256_mul_ps(_mm256_set1_ps(query->slope), squares(ex, ey)));
-    const __m256 c = squares(_mm256_sub_ps(_mm256_set1_ps(query->px), ex), _mm256_sub_ps(_mm256_set1_ps(query->py), ey));
-    unsigned may = (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(c, most, _CMP_LE_OQ));
-    if (may) {
-        const __m256 dx = _mm256_sub_ps(turned(list->map[0] + m, list->map[1] + m, query->way_x, query->way_y), ex);
-        const __m256 dy = _mm256_sub_ps(turned(list->map[2] + m, list->map[3] + m, query->way_x, query->way_y), ey);
-        may &= (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(squares(dx, dy), most, _CMP_LE_OQ));
-    }
-    for (uint32_t t = 0; t < 2; t++)
-        if (query->edges >> t & 1) {
-            const __m256 off = _mm256_sub_ps(_mm256_mul_ps(_mm256_set1_ps(query->branch[t][0]), ey),
-                                             _mm256_mul_ps(_mm256_set1_ps(query->branch[t][1]), ex));
-            const __m256 size = _mm256_andnot_ps(_mm256_set1_ps(-0.0f), off);
-            may |= (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(size, _mm256_set1_ps((float)ASJ_GATE_ACROSS), _CMP_LE_OQ));
-        }
-    return may;
-}
-
-static uint64_t support_gate_avx2(const asj_gate_query *query, const asj_gate_candidates *list, uint32_t first, uint32_t count)
-{
-    uint64_t passed = 0;
-    for (uint32_t n = 0; n < count; n += 8)
-        passed |= (uint64_t)gate_eight(query, list, first + n) << n;
-    return passed & ~(uint64_t)0 >> (64 - count);
 }
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* agreement.c and support_gate.c: exact under perspective; corners of one edge agree across surfaces, Ts and what lies off the edge
- * do not; the gate loses nothing. */
-#include "match/support_gate.h"
+/* agreement.c, support_gate.c and narrow_gate.c: exact under perspective; corners of one edge agree across surfaces, Ts and what
+ * lies off the edge do not; the gates lose nothing. */
+#include "match/narrow_gate.h"
 #include "match/l_junctions_create.h"
 #include "random.h"
 #include "unit_test.h"
@@ -173,25 +173,35 @@ static void scatter(synth_random *random, asj_junction junctions[2][LOCATIONS], 
     }
 }
 
-/* Does d pass the gate of c, as the matcher asks it? Side 0 or 1. */
-static int passes(const stage *s, const asj_candidate *c, const asj_candidate *d, int side)
+/* What d may be for c by both gates, as the matcher asks them; *wide: does it pass the first one? Side 0 or 1. */
+static uint32_t passes(const stage *s, const asj_candidate *c, const asj_candidate *d, int side, int *wide)
 {
     const asj_match_run run = run_of(s);
     const asj_way way = asj_way_between(&run, c, d);
-    const asj_l_junctions *others = &s->image[1 - side].l_junctions;
-    const uint32_t here = side == 0 ? c->j : c->i, there = side == 0 ? d->j : d->i;
+    const asj_l_junctions *asked = &s->image[side].l_junctions, *others = &s->image[1 - side].l_junctions;
+    const uint32_t mine = side == 0 ? c->i : c->j, here = side == 0 ? c->j : c->i, there = side == 0 ? d->j : d->i;
     const double *u = others->direction + 4 * (size_t)here, *map = side == 0 ? c->map.to : c->map.from;
     const double *their = side == 0 ? d->map.to : d->map.from, tolerance = s->options.neighbour_tolerance;
     const double x = side == 0 ? way.x1 : way.x2, y = side == 0 ? way.y1 : way.y2;
-    float numbers[6][1 + ASJ_GATE_PADDING] = {{others->l[there].x}, {others->l[there].y}};
+    const double cover = ASJ_GATE_COVER * (1 - s->options.end_tolerance);
+    float numbers[8][1 + ASJ_GATE_PADDING] = {{others->l[there].x}, {others->l[there].y}};
     for (int k = 0; k < 4; k++)
         numbers[2 + k][0] = (float)their[k];
-    const asj_gate_candidates list = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]}};
-    const asj_gate_query query = {others->l[here].x, others->l[here].y, (float)x, (float)y, (float)(map[0] * x + map[1] * y),
-                           (float)(map[2] * x + map[3] * y), (float)(ASJ_GATE_SLOPE * tolerance * tolerance),
-                           asj_edges_through(&s->image[side].l_junctions, side == 0 ? c->i : c->j, 3, x, y),
-                           {{(float)u[0], (float)u[1]}, {(float)u[2], (float)u[3]}}};
-    return (int)asj_support_gate(&query, &list, 0, 1);
+    asj_gate_lengths(&run, d, side, &numbers[6][0], &numbers[7][0]);
+    const asj_gate_candidates list = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]},
+                                      {numbers[6], numbers[7]}};
+    asj_gate_query query = {others->l[here].x, others->l[here].y, (float)x, (float)y, (float)(map[0] * x + map[1] * y),
+                            (float)(map[2] * x + map[3] * y), (float)(ASJ_GATE_SLOPE * tolerance * tolerance),
+                            asj_edges_through(asked, mine, 3, x, y), {{(float)u[0], (float)u[1]}, {(float)u[2], (float)u[3]}},
+                            {0, 0}, {0, 0}, (float)(cover * cover)};
+    for (uint32_t t = 0; t < 2; t++) {
+        query.length[t] = others->lengths[2 * here + t].length[0];
+        query.least[t] = (float)(cover * sqrt(x * x + y * y) - (double)asked->lengths[2 * mine + t].length[0]);
+    }
+    const asj_narrow_query narrow = asj_narrow_query_of(&s->options, c, side);
+    const asj_narrow_maps maps = asj_narrow_maps_of(d, 0, side);
+    *wide = (int)asj_support_gate(&query, &list, 0, 1);
+    return asj_narrow_gate(&query, &narrow, &maps, numbers[0][0] - query.x, numbers[1][0] - query.y);
 }
 
 static asj_status create(asj_context *context, stage *s, const asj_junction *junctions, int v)
@@ -210,7 +220,7 @@ static void the_gate_loses_nothing(void **state)
     asj_context *context = unit_context(&counter, 1);
     synth_random random;
     stage s;
-    int agreed[2] = {0, 0}, stopped = 0;
+    int agreed[2] = {0, 0}, stopped[2] = {0, 0};
     synth_random_seed(&random, 7);
     memset(&s, 0, sizeof s);
     asj_match_options_init(&s.options);
@@ -223,12 +233,16 @@ static void the_gate_loses_nothing(void **state)
         agreed[0] += surface;
         agreed[1] += edge && !surface;
         for (int side = 0; side < 2; side++) {
-            const int passed = passes(&s, c, d, side);
-            assert_true(passed || !(surface || edge));
-            stopped += !passed;
+            int wide;
+            const uint32_t narrow = passes(&s, c, d, side, &wide);
+            assert_true(wide || !(surface || edge));
+            assert_true(narrow & ASJ_NARROW_SURFACE || !surface);
+            assert_true(narrow & ASJ_NARROW_EDGE || !edge);
+            stopped[0] += !wide;
+            stopped[1] += wide && !narrow;
         }
     }
-    assert_true(agreed[0] > 100 && agreed[1] > 20 && stopped > LOCATIONS * LOCATIONS / 2);
+    assert_true(agreed[0] > 100 && agreed[1] > 20 && stopped[0] > LOCATIONS * LOCATIONS / 2 && stopped[1] > 100);
     for (int v = 0; v < 2; v++)
         asj_l_junctions_free(&context->memory, &s.image[v].l_junctions);
     unit_context_free(&counter, &context);
