@@ -5,12 +5,12 @@
 #define ASJ_SRC_X86_DISCS_H
 
 #include "match/disc.h"
+#include "loads.h"
 #include "patches.h"
 
 #include <immintrin.h>
 
 #include <math.h>
-#include <string.h>
 
 static inline float fold_lanes(__m256 sum)
 {
@@ -78,26 +78,12 @@ static inline int32_t place_disc(const asj_disc *disc, const sampler_avx2 *s, co
     return inside;
 }
 
-/* Two neighbouring grey levels each, at four places. Loads: on many processors a gather takes longer. */
-static inline __m128i four_pairs(const uint16_t *levels, const int32_t *at)
-{
-    int32_t pair[4];
-    for (int32_t n = 0; n < 4; n++)
-        memcpy(&pair[n], levels + at[n], sizeof pair[n]);
-    return _mm_setr_epi32(pair[0], pair[1], pair[2], pair[3]);
-}
-
-static inline __m256i eight_pairs(const uint16_t *levels, const int32_t *at)
-{
-    return _mm256_inserti128_si256(_mm256_castsi128_si256(four_pairs(levels, at)), four_pairs(levels, at + 4), 1);
-}
-
 /* Grey levels, as bilinear() has them: u (256 - w) + l w = 256 u + (l - u) w. */
 static inline __m256 eight_levels(const uint16_t *levels, const uint16_t *below, const disc_places *places, int32_t i)
 {
     const __m256i across = v_load(places->across + i), half = _mm256_set1_epi32(1 << 14);
-    const __m256i upper = _mm256_srai_epi32(_mm256_madd_epi16(eight_pairs(levels, places->at + i), across), 1);
-    const __m256i lower = _mm256_srai_epi32(_mm256_madd_epi16(eight_pairs(below, places->at + i), across), 1);
+    const __m256i upper = _mm256_srai_epi32(_mm256_madd_epi16(two_at_eight(levels, places->at + i), across), 1);
+    const __m256i lower = _mm256_srai_epi32(_mm256_madd_epi16(two_at_eight(below, places->at + i), across), 1);
     const __m256i more = _mm256_mullo_epi32(_mm256_sub_epi32(lower, upper), v_load(places->down + i));
     return _mm256_cvtepi32_ps(_mm256_srai_epi32(_mm256_add_epi32(_mm256_add_epi32(_mm256_slli_epi32(upper, 8), more), half), 15));
 }

@@ -4,6 +4,7 @@
 #define ASJ_SRC_X86_EDGES_H
 
 #include "detect/edge_rows.h"
+#include "loads.h"
 
 #include <immintrin.h>
 
@@ -83,8 +84,9 @@ static inline __m256i level_at(const eight_rows *rows, ptrdiff_t stride, __m256i
     const __m256i at = _mm256_add_epi32(below, _mm256_srai_epi32(x, 16)), byte = _mm256_set1_epi32(255);
     const __m256i wx = _mm256_and_si256(_mm256_srli_epi32(x, 8), byte), wy = _mm256_and_si256(_mm256_srli_epi32(y, 8), byte);
     const __m256i weights = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(256), wx), _mm256_slli_epi32(wx, 16));
-    const __m256i upper = _mm256_i32gather_epi32((const int *)(const void *)rows->gray, at, 2); /* two grey values each */
-    const __m256i lower = _mm256_i32gather_epi32((const int *)(const void *)(rows->gray + stride), at, 2);
+    int32_t places[ASJ_EDGE_BATCH];
+    _mm256_storeu_si256((__m256i *)(void *)places, at);
+    const __m256i upper = two_at_eight(rows->gray, places), lower = two_at_eight(rows->gray + stride, places);
     const __m256i above = _mm256_srli_epi32(_mm256_madd_epi16(upper, weights), 1);
     const __m256i change = _mm256_sub_epi32(_mm256_srli_epi32(_mm256_madd_epi16(lower, weights), 1), above);
     return _mm256_srli_epi32(_mm256_add_epi32(_mm256_slli_epi32(above, 8), _mm256_mullo_epi32(wy, change)), 7);

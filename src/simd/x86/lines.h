@@ -4,6 +4,7 @@
 #define ASJ_SRC_X86_LINES_H
 
 #include "detect/line_sums.h"
+#include "loads.h"
 
 #include <immintrin.h>
 
@@ -115,28 +116,26 @@ static void line_sums_avx2(const asj_frame *frame, const asj_line_band *band, as
         sums[i] = total_sums(&low[i], &high[i]);
 }
 
-/* Four neighbours at each of 8 places: the first two of each, and the others. Each gather takes half of the places, in such an
- * order that the halves of its results are put together in each 128 bits. */
-static inline void gather_fours(const uint16_t *gray, __m256i at, __m256i *first, __m256i *second)
+/* Four neighbours each at eight places: the first two of each, and the others; halves of vectors in such an order that both come
+ * out in theirs. */
+static inline void four_each(const uint16_t *gray, const int32_t *at, __m256i *first, __m256i *second)
 {
-    const long long *const fours = (const long long *)(const void *)gray;
-    const __m256i order = _mm256_permute4x64_epi64(at, 0xd8);
-    const __m256 a = _mm256_castsi256_ps(_mm256_i32gather_epi64(fours, _mm256_castsi256_si128(order), 2));
-    const __m256 b = _mm256_castsi256_ps(_mm256_i32gather_epi64(fours, _mm256_extracti128_si256(order, 1), 2));
+    const __m256 a = _mm256_castsi256_ps(_mm256_set_m128i(four_at_two(gray, at[4], at[5]), four_at_two(gray, at[0], at[1])));
+    const __m256 b = _mm256_castsi256_ps(_mm256_set_m128i(four_at_two(gray, at[6], at[7]), four_at_two(gray, at[2], at[3])));
     *first = _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0x88));
     *second = _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0xdd));
 }
 
-/* Central differences at the four pixels around 8 samples, bilinear; at[i]: the upper left one of sample i. */
-static inline void sample_eight(const uint16_t *gray, int32_t stride, __m256i at, __m256i right, __m256 low, __m256 *gx, __m256 *gy)
+/* Central differences at the four pixels around 8 samples, bilinear; places: the upper left one of each sample. */
+static inline void sample_eight(const uint16_t *gray, int32_t stride, __m256i places, __m256i right, __m256 low, __m256 *gx,
+                                __m256 *gy)
 {
-    const int *const pairs = (const int *)(const void *)gray; /* two grey values each */
-#define PAIRS(offset) _mm256_i32gather_epi32(pairs, _mm256_add_epi32(at, _mm256_set1_epi32(offset)), 2)
-    const __m256i above = PAIRS(-stride), below = PAIRS(2 * stride);
-#undef PAIRS
+    int32_t at[8];
     __m256i left0, right0, left1, right1;
-    gather_fours(gray - 1, at, &left0, &right0);
-    gather_fours(gray - 1 + stride, at, &left1, &right1);
+    _mm256_storeu_si256((__m256i *)(void *)at, places);
+    const __m256i above = two_at_eight(gray - stride, at), below = two_at_eight(gray + 2 * stride, at);
+    four_each(gray - 1, at, &left0, &right0);
+    four_each(gray + stride - 1, at, &left1, &right1);
     const __m256i middle0 = _mm256_or_si256(_mm256_srli_epi32(left0, 16), _mm256_slli_epi32(right0, 16));
     const __m256i middle1 = _mm256_or_si256(_mm256_srli_epi32(left1, 16), _mm256_slli_epi32(right1, 16));
     const __m256i weights = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(4096), right), _mm256_slli_epi32(right, 16));

@@ -4,6 +4,7 @@
 #define ASJ_SRC_X86_LINES512_H
 
 #include "detect/line_sums.h"
+#include "loads.h"
 
 #include <immintrin.h>
 
@@ -125,27 +126,39 @@ static void line_sums_avx512(const asj_frame *frame, const asj_line_band *band, 
     total_sums(sides, sums);
 }
 
-/* Four neighbours each, from `offset` on: the first two and the last two. */
-static inline void four_each(const uint16_t *gray, __m512i at, int32_t offset, __m512i *first, __m512i *last)
+/* Two neighbours each at sixteen places. */
+static inline __m512i two_at_sixteen(const uint16_t *gray, const int32_t *at)
+{
+    return _mm512_inserti64x4(_mm512_castsi256_si512(two_at_eight(gray, at)), two_at_eight(gray, at + 8), 1);
+}
+
+/* Four neighbours each at eight places, .. */
+static inline __m512i four_at_eight(const uint16_t *gray, const int32_t *at)
+{
+    const __m256i low = _mm256_set_m128i(four_at_two(gray, at[2], at[3]), four_at_two(gray, at[0], at[1]));
+    const __m256i high = _mm256_set_m128i(four_at_two(gray, at[6], at[7]), four_at_two(gray, at[4], at[5]));
+    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+}
+
+/* .. and at sixteen: the first two and the last two. */
+static inline void four_each(const uint16_t *gray, const int32_t *at, __m512i *first, __m512i *last)
 {
     const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-    const __m512i place = _mm512_add_epi32(at, _mm512_set1_epi32(offset));
-    const __m512i low = _mm512_i32gather_epi64(_mm512_castsi512_si256(place), (const void *)gray, 2);
-    const __m512i high = _mm512_i32gather_epi64(_mm512_extracti64x4_epi64(place, 1), (const void *)gray, 2);
+    const __m512i low = four_at_eight(gray, at), high = four_at_eight(gray, at + 8);
     *first = _mm512_permutex2var_epi32(low, even, high);
     *last = _mm512_permutex2var_epi32(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
 }
 
 /* As in lines.h. */
-static inline void sample_sixteen(const uint16_t *gray, int32_t stride, __m512i at, __m512i right, __m512 low, __m512 *gx,
+static inline void sample_sixteen(const uint16_t *gray, int32_t stride, __m512i places, __m512i right, __m512 low, __m512 *gx,
                                   __m512 *gy)
 {
-#define PAIRS(offset) _mm512_i32gather_epi32(_mm512_add_epi32(at, _mm512_set1_epi32(offset)), (const void *)gray, 2)
-    const __m512i above = PAIRS(-stride), below = PAIRS(2 * stride);
-#undef PAIRS
+    int32_t at[16];
     __m512i left0, right0, left1, right1;
-    four_each(gray, at, -1, &left0, &right0);
-    four_each(gray, at, stride - 1, &left1, &right1);
+    _mm512_storeu_si512(at, places);
+    const __m512i above = two_at_sixteen(gray - stride, at), below = two_at_sixteen(gray + 2 * stride, at);
+    four_each(gray - 1, at, &left0, &right0);
+    four_each(gray + stride - 1, at, &left1, &right1);
     const __m512i middle0 = _mm512_or_si512(_mm512_srli_epi32(left0, 16), _mm512_slli_epi32(right0, 16));
     const __m512i middle1 = _mm512_or_si512(_mm512_srli_epi32(left1, 16), _mm512_slli_epi32(right1, 16));
     const __m512i weights = _mm512_or_si512(_mm512_sub_epi32(_mm512_set1_epi32(4096), right), _mm512_slli_epi32(right, 16));
