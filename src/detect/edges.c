@@ -27,6 +27,7 @@
 #define END_SURE 3.0   /* .. standard uncertainties of the end, .. */
 #define END_MOST 8.0   /* .. but no more than this: where an edge fades they may be fifty pixels */
 #define LEAST 3.0      /* px */
+#define ROUNDING 1e-3  /* px: more than a sum of coordinates is off */
 #define LEAST_JUNCTIONS 32 /* for a thread: one takes about 1 us */
 
 typedef struct graph {
@@ -47,6 +48,8 @@ typedef struct way {
     const asj_hypothesis *from;
     const asj_hypothesis_branch *along;
     double ux, uy;
+    double off;     /* OFF_LINE, in px of the image */
+    int32_t octave; /* whose junctions count, asj_octave_index(); -1 = of all */
 } way;
 
 size_t asj_edges_scratch(size_t count)
@@ -60,9 +63,14 @@ static double end_tolerance(const asj_hypothesis_branch *branch)
     return fmax(END_NEAR * scale, fmin(END_SURE * sqrt(branch->end_variance), END_MOST * scale));
 }
 
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 static double off_tolerance(const asj_hypothesis_branch *branch, double distance)
 {
-    return fmax(OFF_LINE * asj_octave_scale(branch->octave), OFF_SHARE * distance);
+    return larger(OFF_LINE * asj_octave_scale(branch->octave), OFF_SHARE * distance);
 }
 
 static int ends_at(const asj_hypothesis_branch *branch, double distance)
@@ -113,7 +121,7 @@ static int is_on(const way *w, const asj_grid_place *place, double *distance)
 {
     const double dx = place->x - w->from->x, dy = place->y - w->from->y;
     *distance = dx * w->ux + dy * w->uy;
-    return *distance >= LEAST && fabs(dy * w->ux - dx * w->uy) <= off_tolerance(w->along, *distance);
+    return *distance >= LEAST && fabs(dy * w->ux - dx * w->uy) <= larger(w->off, OFF_SHARE * *distance);
 }
 
 /* The branch of junction `index`, t px along w, that comes back; -1 = none. */
@@ -144,8 +152,8 @@ static int32_t look_in(const graph *g, const way *w, int32_t cell, double *neare
     for (int32_t k = g->grid->first[cell]; k < g->grid->first[cell + 1]; k++) {
         const asj_grid_place *place = &g->grid->places[k];
         double distance;
-        if (!is_on(w, place, &distance) || !(distance < *nearest) || (size_t)place->junction == w->junction ||
-            (g->own_octave && place->octave != asj_octave_index(w->from->octave)))
+        if ((w->octave >= 0 && place->octave != w->octave) || !is_on(w, place, &distance) || !(distance < *nearest) ||
+            (size_t)place->junction == w->junction)
             continue;
         const int32_t branch = comes_back(g, w, place->junction, distance);
         if (branch >= 0 && (!g->must_divide || ends_at(w->along, distance) ||
@@ -157,6 +165,18 @@ static int32_t look_in(const graph *g, const way *w, int32_t cell, double *neare
     return found;
 }
 
+/* May a place of this cell lie on the line of w, nearer than `nearest`? Of cells at the border that is not asked: they hold what
+ * lies outside, too. */
+static int may_hold(const graph *g, const way *w, int32_t column, int32_t row, double nearest)
+{
+    if (column < 2 || row < 2 || column > g->grid->columns - 3 || row > g->grid->rows - 3)
+        return 1;
+    const double dx = (column - 0.5) * ASJ_GRID_CELL - w->from->x, dy = (row - 0.5) * ASJ_GRID_CELL - w->from->y;
+    const double along = dx * w->ux + dy * w->uy, half = 0.5 * ASJ_GRID_CELL * (fabs(w->ux) + fabs(w->uy)) + ROUNDING;
+    return along + half >= LEAST && along - half <= nearest &&
+           fabs(dy * w->ux - dx * w->uy) <= half + larger(w->off, OFF_SHARE * (along + half));
+}
+
 /* The nearest junction on the way of a branch that it may be joined with; -1 = none. At t along the way all junctions up to
  * t + ASJ_GRID_CELL / 2 that lie near enough to the line are in the cells around, `ring` to either side, of which those around the
  * place before have been looked at. */
@@ -164,7 +184,8 @@ static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
 {
     const asj_hypothesis *from = &g->hypotheses[junction];
     const asj_hypothesis_branch *along = &from->branches[branch];
-    const way w = {junction, from, along, cos(along->angle), sin(along->angle)};
+    const way w = {junction, from, along, cos(along->angle), sin(along->angle), OFF_LINE * asj_octave_scale(along->octave),
+                   g->own_octave ? asj_octave_index(from->octave) : -1};
     const double last = 2 * along->length + end_tolerance(along);
     const int32_t columns = g->grid->columns, rows = g->grid->rows;
     const int32_t ring = (int32_t)ceil(hypot(off_tolerance(along, last), ASJ_GRID_CELL / 2) / ASJ_GRID_CELL);
@@ -179,7 +200,8 @@ static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
         const int32_t upper = row > ring ? row - ring : 0, lower = row + ring < rows ? row + ring : rows - 1;
         for (int32_t y_cell = upper; y_cell <= lower; y_cell++)
             for (int32_t x_cell = left; x_cell <= right; x_cell++)
-                if (abs(y_cell - row_before) > ring || abs(x_cell - column_before) > ring)
+                if ((abs(y_cell - row_before) > ring || abs(x_cell - column_before) > ring) &&
+                    may_hold(g, &w, x_cell, y_cell, nearest))
                     found = look_in(g, &w, y_cell * columns + x_cell, &nearest, found);
         column_before = column;
         row_before = row;
