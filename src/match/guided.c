@@ -20,6 +20,7 @@
 
 #define GUIDES_ASKED 8            /* nearest matches: two or three surfaces meet at a corner; 4 or 16 find as much within 1 % */
 #define LEAST_TURN_COSINE 0.906307787 /* 25 degrees: what map_tolerance lets two maps differ by, 0.5 in norm, is about that */
+#define MOST_NEAR 64              /* locations that are sorted; where there are more they are gone through in order */
 #define MOST_PROPOSALS 32         /* for one L-junction; where more are possible, none is likely */
 
 /* A chosen match as seen from one image. */
@@ -67,29 +68,57 @@ static int may_propose(const asj_match_run *run, int32_t side, uint32_t l, uint3
     return of_guests && !run->taken[side][mine->location[l]] && !run->taken[1 - side][others->location[k]];
 }
 
-/* What guide g proposes for L-junction l of image `side`. */
-static void ask(const asj_match_run *run, int32_t side, uint32_t l, const guide *g, proposals *p)
+/* A guide's proposals for an L-junction. */
+typedef struct question {
+    const asj_match_run *run;
+    int32_t side;      /* of the L-junction, */
+    uint32_t l;        /* its number, */
+    const double *map; /* and the guide's map from there */
+} question;
+
+/* Those at location q of the other image. */
+static void ask_at(const question *of, uint32_t q, proposals *p)
 {
-    const asj_l_junctions *mine = &run->image[side]->l_junctions, *others = &run->image[1 - side]->l_junctions;
-    const double *u = mine->direction + 4 * (size_t)l;
+    const asj_l_junctions *mine = &of->run->image[of->side]->l_junctions, *others = &of->run->image[1 - of->side]->l_junctions;
+    const double *u = mine->direction + 4 * (size_t)of->l;
+    for (uint32_t m = others->first_of_location[q]; m < others->first_of_location[q + 1]; m++) {
+        const uint32_t k = others->l_of_location[m];
+        const double *v = others->direction + 4 * (size_t)k;
+        if (may_propose(of->run, of->side, of->l, k) && turns(of->map, u, v) && turns(of->map, u + 2, v + 2))
+            propose(p, k);
+    }
+}
+
+/* Those at all locations within `radius` of (x, y), one after the other. */
+static void ask_all_near(const question *of, double x, double y, double radius, proposals *p)
+{
+    const asj_l_junctions *others = &of->run->image[1 - of->side]->l_junctions;
+    for (uint32_t q = asj_first_location(others, x - radius); q < others->location_count; q++) {
+        const double ex = others->location_x[q] - x, ey = others->location_y[q] - y;
+        if (ex > radius)
+            break;
+        if (ex * ex + ey * ey <= radius * radius)
+            ask_at(of, q, p);
+    }
+}
+
+/* What guide g proposes for L-junction l of image `side`; `locations`: of the other image. */
+static void ask(const asj_match_run *run, int32_t side, uint32_t l, const guide *g, const asj_location_grid *locations,
+                proposals *p)
+{
+    const asj_l_junctions *mine = &run->image[side]->l_junctions;
+    const question of = {run, side, l, g->map};
     double dx = (double)mine->l[l].x - g->x, dy = (double)mine->l[l].y - g->y;
     double px = g->map[0] * dx + g->map[1] * dy, py = g->map[2] * dx + g->map[3] * dy;
     double radius = ASJ_AGREEMENT_PIXELS + run->options->neighbour_tolerance * sqrt(px * px + py * py);
+    uint32_t near[MOST_NEAR];
     px += g->to_x;
     py += g->to_y;
-    for (uint32_t q = asj_first_location(others, px - radius); q < others->location_count; q++) {
-        double ex = others->location_x[q] - px, ey = others->location_y[q] - py;
-        if (ex > radius)
-            break;
-        if (ex * ex + ey * ey > radius * radius)
-            continue;
-        for (uint32_t m = others->first_of_location[q]; m < others->first_of_location[q + 1]; m++) {
-            const uint32_t k = others->l_of_location[m];
-            const double *v = others->direction + 4 * (size_t)k;
-            if (may_propose(run, side, l, k) && turns(g->map, u, v) && turns(g->map, u + 2, v + 2))
-                propose(p, k);
-        }
-    }
+    const uint32_t count = asj_location_grid_within(locations, px, py, radius, MOST_NEAR, near);
+    if (count > MOST_NEAR)
+        ask_all_near(&of, px, py, radius, p);
+    for (uint32_t n = 0; n < count && count <= MOST_NEAR; n++)
+        ask_at(&of, near[n], p);
 }
 
 /* --- both directions -------------------------------------------------------------------------------------------------------- */
@@ -113,7 +142,7 @@ typedef struct job {
     const asj_match_run *run;
     int32_t side;
     const guides *asked;
-    const asj_location_grid *grid; /* of these */
+    const asj_location_grid *grid, *locations; /* of these, and of the locations of the other image */
     proposals *all;
     asj_watch *watch;
 } job;
@@ -126,33 +155,48 @@ static void ask_some(const void *data, const asj_part *part)
         uint32_t near[GUIDES_ASKED];
         const uint32_t n = asj_location_grid_nearest(j->grid, (double)mine[l].x, (double)mine[l].y, -1, GUIDES_ASKED, near);
         for (uint32_t k = 0; k < n; k++)
-            ask(j->run, j->side, (uint32_t)l, &j->asked->list[near[k]], &j->all[l]);
+            ask(j->run, j->side, (uint32_t)l, &j->asked->list[near[k]], j->locations, &j->all[l]);
     }
 }
 
 static asj_status ask_all(const asj_match_run *run, int32_t side, const guides *asked, const asj_location_grid *grid,
-                          proposals *all)
+                          const asj_location_grid *locations, proposals *all)
 {
     asj_watch watch;
-    const job j = {run, side, asked, grid, all, &watch};
+    const job j = {run, side, asked, grid, locations, all, &watch};
     asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
     asj_parallel(run->context, run->context->threads, run->image[side]->l_junctions.count, 16, ask_some, &j);
     return asj_watch_end(&watch);
 }
 
+static asj_status grid_of_locations(asj_memory *memory, const asj_l_junctions *all, asj_location_grid *grid)
+{
+    asj_location_place *places = asj_allocate(memory, all->location_count, sizeof *places);
+    if (!places)
+        return ASJ_ERROR_MEMORY;
+    for (uint32_t q = 0; q < all->location_count; q++)
+        places[q] = (asj_location_place){all->location_x[q], all->location_y[q], q};
+    const asj_status status = asj_location_grid_make(memory, places, all->location_count, grid);
+    asj_release(memory, places);
+    return status;
+}
+
 static asj_status one_side(const asj_match_run *run, int32_t side, const guides *asked, asj_pair_list *fresh)
 {
     asj_memory *memory = &run->context->memory;
-    asj_location_grid grid = {.first = NULL};
+    asj_location_grid grid = {.first = NULL}, locations = {.first = NULL};
     proposals *all = asj_allocate_zero(memory, run->image[side]->l_junctions.count, sizeof *all);
     asj_status status = all ? asj_location_grid_make(memory, asked->places, (uint32_t)asked->count, &grid) : ASJ_ERROR_MEMORY;
     if (status == ASJ_OK)
-        status = ask_all(run, side, asked, &grid, all);
+        status = grid_of_locations(memory, &run->image[1 - side]->l_junctions, &locations);
+    if (status == ASJ_OK)
+        status = ask_all(run, side, asked, &grid, &locations, all);
     else
         asj_fail(run->context, status, "no memory for the guided pass");
     if (status == ASJ_OK)
         status = collect(run, side, all, fresh);
     asj_location_grid_free(memory, &grid);
+    asj_location_grid_free(memory, &locations);
     asj_release(memory, all);
     return status;
 }

@@ -133,6 +133,40 @@ uint32_t asj_location_grid_nearest(const asj_location_grid *grid, double x, doub
     }
 }
 
+/* --- all that are near ------------------------------------------------------------------------------------------------------ */
+
+/* Into a list that rises. */
+static void insert(uint32_t index, uint32_t count, uint32_t *list)
+{
+    uint32_t k = count;
+    for (; k > 0 && list[k - 1] > index; k--)
+        list[k] = list[k - 1];
+    list[k] = index;
+}
+
+uint32_t asj_location_grid_within(const asj_location_grid *grid, double x, double y, double radius, uint32_t most, uint32_t *out)
+{
+    const double reach = radius + ROUNDING, left = x - radius;
+    const int32_t upper = cell_of(y - reach, grid->upper, grid->cell, grid->rows);
+    const int32_t lower = cell_of(y + reach, grid->upper, grid->cell, grid->rows);
+    const size_t from = (size_t)cell_of(x - reach, grid->left, grid->cell, grid->columns);
+    const size_t end = (size_t)cell_of(x + reach, grid->left, grid->cell, grid->columns) + 1;
+    uint32_t count = 0;
+    for (int32_t row = upper; row <= lower; row++) {
+        const size_t before = (size_t)row * (size_t)grid->columns;
+        for (uint32_t k = grid->first[before + from]; k < grid->first[before + end]; k++) {
+            const asj_location_place *p = &grid->places[k];
+            const double dx = p->x - x, dy = p->y - y;
+            if (dx * dx + dy * dy > radius * radius || dx > radius || p->x < left)
+                continue;
+            if (count == most)
+                return most + 1;
+            insert(p->index, count++, out);
+        }
+    }
+    return count;
+}
+
 /* --- along a branch --------------------------------------------------------------------------------------------------------- */
 
 /* Row after row of cells: in each the columns that the branch and `off` px beside it pass there. */

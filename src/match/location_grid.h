@@ -27,6 +27,10 @@ void asj_location_grid_free(asj_memory *memory, asj_location_grid *grid);
 uint32_t asj_location_grid_nearest(const asj_location_grid *grid, double x, double y, double separation, uint32_t limit,
                                    uint32_t *out);
 
+/* The indices of all places no farther than `radius` px from (x, y), rising, with room for `most`. Returns how many there are; when
+ * that is more than `most` nothing else is known. */
+uint32_t asj_location_grid_within(const asj_location_grid *grid, double x, double y, double radius, uint32_t most, uint32_t *out);
+
 /* px from (x, y) along the unit vector u to the farthest place that lies between `least` and `most` along it and less than `off`
  * beside it; 0 = none. */
 double asj_location_grid_last(const asj_location_grid *grid, double x, double y, const double u[2], double least, double most,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The nearest locations, and the last one that a branch passes, against all of them asked one by one. */
+/* The nearest locations, all within a radius, and the last one that a branch passes, against all of them asked one by one. */
 #include "match/location_grid.h"
 #include "unit_test.h"
 #include "core/context.h"
@@ -46,6 +46,22 @@ static uint32_t naive_nearest(uint32_t all, double x, double y, double separatio
     return count;
 }
 
+static void check_within(const asj_location_grid *grid, uint32_t all, double x, double y, double radius)
+{
+    uint32_t found[MOST], count = 0;
+    const uint32_t given = asj_location_grid_within(grid, x, y, radius, MOST, found);
+    for (uint32_t p = 0; p < all; p++) {
+        const double dx = places[p].x - x, dy = places[p].y - y;
+        if (dx * dx + dy * dy > radius * radius)
+            continue;
+        assert_true(count < given && found[count] == p);
+        count++;
+    }
+    assert_int_equal(given, count);
+    if (count > 0)
+        assert_int_equal(asj_location_grid_within(grid, x, y, radius, count - 1, found), count);
+}
+
 static double naive_last(uint32_t all, double x, double y, const double u[2], double most)
 {
     double last = 0;
@@ -84,6 +100,7 @@ static void against_all(void **state)
             const uint32_t count = asj_location_grid_nearest(&grid, x, y, separation, ASKED, found);
             assert_int_equal(count, naive_nearest(all, x, y, separation, wanted));
             assert_memory_equal(found, wanted, count * sizeof *found);
+            check_within(&grid, all, x, y, k % 4 * 15.0 + 1);
             const double last = asj_location_grid_last(&grid, x, y, u, 10, most, 3);
             assert_true(last == naive_last(all, x, y, u, most));
             passed += last > 0;
