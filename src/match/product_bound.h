@@ -26,10 +26,15 @@ int32_t asj_bound_blocks(uint32_t frames);
 int32_t asj_bound_above(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,
                         const uint32_t *among, int32_t *which);
 
-/* Two bits for each vector of a block, of which the lower one counts. */
-static inline void asj_bound_add(uint32_t *among, int32_t first, int32_t which)
+/* Vectors from .. end - 1. Each has two bits in the number of its block, of which the lower one counts. */
+static inline void asj_bound_add(uint32_t *among, int32_t first, int32_t from, int32_t end)
 {
-    among[which / ASJ_BOUND_LANES - first / ASJ_BOUND_LANES] |= (uint32_t)1 << which % ASJ_BOUND_LANES * 2;
+    for (int32_t stop; from < end; from = stop) {
+        const int32_t block = from / ASJ_BOUND_LANES, next = (block + 1) * ASJ_BOUND_LANES;
+        stop = end < next ? end : next;
+        among[block - first / ASJ_BOUND_LANES] |= (uint32_t)0x55555555 >> 2 * (ASJ_BOUND_LANES - (stop - from))
+                                                                      << from % ASJ_BOUND_LANES * 2;
+    }
 }
 
 static inline int asj_bound_is_among(const uint32_t *among, int32_t first, int32_t which)

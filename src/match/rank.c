@@ -106,9 +106,14 @@ static int find_expected(const table *t, uint32_t i, const tile *columns, uint32
     for (uint32_t j = columns->first; j < columns->end; j += ASJ_EXPECTED_AT_ONCE) {
         const uint32_t rest = columns->end - j, some = rest < ASJ_EXPECTED_AT_ONCE ? rest : ASJ_EXPECTED_AT_ONCE;
         uint64_t bits = asj_expected_among(&t->columns_expected, t->run->expected, i, j, some);
-        for (uint32_t k = j; bits; k++, bits >>= 1)
-            for (uint32_t g = first_frame[k]; bits & 1 && g < first_frame[k + 1]; g++, any = 1)
-                asj_bound_add(among, (int32_t)start, (int32_t)g);
+        while (bits) { /* those in a row at once */
+            const uint32_t from = (uint32_t)__builtin_ctzll(bits);
+            const uint32_t run = ~(bits >> from) ? (uint32_t)__builtin_ctzll(~(bits >> from)) : ASJ_EXPECTED_AT_ONCE;
+            const uint32_t g = first_frame[j + from], end = first_frame[j + from + run];
+            asj_bound_add(among, (int32_t)start, (int32_t)g, (int32_t)end);
+            any |= g < end;
+            bits &= from + run < ASJ_EXPECTED_AT_ONCE ? ~(uint64_t)0 << (from + run) : 0;
+        }
     }
     return any;
 }

@@ -169,7 +169,7 @@ asj_status run_bounds(asj_context *context, const subject *s, uint16_t *scratch,
     uint32_t among[ROOM / ASJ_BOUND_LANES] = {0};
     for (int32_t g = first; g < end; g++)
         if (synth_random_bits(&random) % 4 < s->seed % 4)
-            asj_bound_add(among, first, g);
+            asj_bound_add(among, first, g, g + 1 < end && g % 3 == 0 ? g + 2 : g + 1);
     memset(output, 0, bounds_size(s));
     which[CANDIDATES] = context->ops->bound->above(left, right, least, most, first, end, s->seed % 5 ? among : NULL, which);
     return ASJ_OK;
