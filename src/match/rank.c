@@ -13,6 +13,7 @@
 #include "induced_score.h"
 #include "product_bound.h"
 #include "shortlist.h"
+#include "core/lowest_bit.h"
 #include "core/threads.h"
 
 #include <string.h>
@@ -107,8 +108,8 @@ static int find_expected(const table *t, uint32_t i, const tile *columns, uint32
         const uint32_t rest = columns->end - j, some = rest < ASJ_EXPECTED_AT_ONCE ? rest : ASJ_EXPECTED_AT_ONCE;
         uint64_t bits = asj_expected_among(&t->columns_expected, t->run->expected, i, j, some);
         while (bits) { /* those in a row at once */
-            const uint32_t from = (uint32_t)__builtin_ctzll(bits);
-            const uint32_t run = ~(bits >> from) ? (uint32_t)__builtin_ctzll(~(bits >> from)) : ASJ_EXPECTED_AT_ONCE;
+            const uint32_t from = asj_lowest_bit(bits);
+            const uint32_t run = ~(bits >> from) ? asj_lowest_bit(~(bits >> from)) : ASJ_EXPECTED_AT_ONCE;
             const uint32_t g = first_frame[j + from], end = first_frame[j + from + run];
             asj_bound_add(among, (int32_t)start, (int32_t)g, (int32_t)end);
             any |= g < end;

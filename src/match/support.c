@@ -9,6 +9,7 @@
  * 71 000 of 129 000 have their whole share of 129.) */
 #include "support.h"
 #include "narrow_gate.h"
+#include "core/lowest_bit.h"
 #include "core/watch.h"
 
 #include <math.h>
@@ -182,7 +183,7 @@ static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint3
         const uint32_t some = end - m < ASJ_GATE_COUNT ? end - m : ASJ_GATE_COUNT;
         uint64_t passed = in->run->context->ops->gate->pass(&n->query, &s->gate, m, some);
         for (; passed && count < most; passed &= passed - 1) {
-            const uint32_t at = m + (uint32_t)__builtin_ctzll(passed);
+            const uint32_t at = m + asj_lowest_bit(passed);
             const double ex = (double)s->gate.x[at] - (double)n->query.x, ey = (double)s->gate.y[at] - (double)n->query.y;
             const uint16_t weight = weigh(in, n, &s->maps[at], x, y, ex, ey);
             if (weight)
