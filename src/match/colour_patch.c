@@ -6,6 +6,12 @@
  * channel. Two frames are as alike as the mean of the three channels' correlations says. Where nothing has a colour that is the
  * correlation of grey levels; doors, tiles and spines of books that grey levels take for each other it tells apart.
  *
+ * How much that is worth depends on the place. Where all channels look the same they are grey levels once more, with fewer samples,
+ * and frames of videos lose by them. So with r the correlation between two channels of a patch, in the mean, over that of each with
+ * itself, its hue is HUE (1 - r), 1 at most, and two frames are as alike as (g + w c) / (1 + w): g by grey levels, c by colours, w
+ * the larger hue of the two (compare.c). (42 pairs of cropped frames, as they are, AUC at 5, 10, 20 degrees: 38.2/57.9/70.7 without
+ * colours, with HUE 4 37.6/57.8/70.7, with 8 37.3/58.9/72.5, and with w = 1 for all 34.2/55.1/70.3.)
+ *
  * From the image at half its size: colours are seldom finer than that (JPEG and video keep them so), and a byte for each of them is
  * all that features need to keep. Whole numbers: the same on every machine. */
 #include "colour_patch.h"
@@ -19,6 +25,7 @@
 #define SIDE ASJ_COLOUR_PATCH_SIDE
 #define THIRD_BITS 14
 #define ROOT_OF_THIRD 9459 /* sqrt(1/3) in 2^-THIRD_BITS */
+#define HUE 4
 
 /* --- the image at half its size ---------------------------------------------------------------------------------------------- */
 
@@ -115,27 +122,65 @@ static void fill_base(const asj_small_picture *picture, int32_t channel, asj_pyr
             pyramid->plane[0][y * (width + 1) + x] = (uint16_t)(from[y * width + x] * ASJ_GRAY_ONE);
 }
 
-asj_status asj_colour_patches_create(asj_context *context, const asj_match_options *options, const asj_small_picture *picture,
-                                     double scale, const asj_affine_frame *frames, uint32_t count, int16_t **patches)
+typedef struct hue_job {
+    const int16_t *patch;
+    uint16_t *hue;
+} hue_job;
+
+static void find_hues(const void *data, const asj_part *part)
 {
-    asj_pyramid pyramid;
-    asj_status status = asj_pyramid_allocate(context, picture->width, picture->height, &pyramid);
-    *patches = asj_allocate(&context->memory, count, ASJ_COLOUR_PATCH_LENGTH * sizeof **patches);
-    if (status == ASJ_OK && !*patches)
-        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the colours of %lu patches", (unsigned long)count);
+    const hue_job *j = data;
+    for (int64_t f = part->first; f < part->end; f++) {
+        const int16_t *red = j->patch + f * ASJ_COLOUR_PATCH_LENGTH, *green = red + SIDE * SIDE, *blue = green + SIDE * SIDE;
+        const int64_t own = asj_patch_product(red, red, ASJ_COLOUR_PATCH_LENGTH);
+        const int64_t between = (int64_t)asj_patch_product(red, green, SIDE * SIDE) + asj_patch_product(green, blue, SIDE * SIDE) +
+                                asj_patch_product(red, blue, SIDE * SIDE);
+        const int64_t hue = own > 0 ? ASJ_HUE_ONE * HUE * (own - between) / own : 0;
+        j->hue[f] = (uint16_t)(hue < 0 ? 0 : hue > ASJ_HUE_ONE ? ASJ_HUE_ONE : hue);
+    }
+}
+
+static asj_status sample_channels(asj_context *context, const sample_job *from, const asj_small_picture *picture, uint32_t count,
+                                  asj_pyramid *pyramid, int16_t *patch)
+{
+    asj_status status = ASJ_OK;
     for (int32_t channel = 0; channel < 3 && status == ASJ_OK; channel++) {
         asj_watch watch;
-        fill_base(picture, channel, &pyramid);
-        asj_pyramid_complete(context, &pyramid);
+        sample_job j = *from;
+        fill_base(picture, channel, pyramid);
+        asj_pyramid_complete(context, pyramid);
         asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
-        const sample_job j = {&pyramid, options, frames, scale, *patches + channel * SIDE * SIDE, &watch};
+        j.first = patch + channel * SIDE * SIDE;
+        j.watch = &watch;
         asj_parallel(context, context->threads, count, 0, sample_some, &j);
         status = asj_watch_end(&watch);
     }
-    asj_pyramid_free(&context->memory, &pyramid);
-    if (status != ASJ_OK) {
-        asj_release_much(&context->memory, *patches);
-        *patches = NULL;
-    }
     return status;
+}
+
+asj_status asj_colour_patches_create(asj_context *context, const asj_match_options *options, const asj_small_picture *picture,
+                                     double scale, const asj_affine_frame *frames, uint32_t count, asj_colour_patches *patches)
+{
+    asj_pyramid pyramid;
+    const sample_job job = {&pyramid, options, frames, scale, NULL, NULL};
+    asj_status status = asj_pyramid_allocate(context, picture->width, picture->height, &pyramid);
+    patches->patch = asj_allocate(&context->memory, count, ASJ_COLOUR_PATCH_LENGTH * sizeof *patches->patch);
+    patches->hue = asj_allocate(&context->memory, count, sizeof *patches->hue);
+    if (status == ASJ_OK && (!patches->patch || !patches->hue))
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the colours of %lu patches", (unsigned long)count);
+    if (status == ASJ_OK)
+        status = sample_channels(context, &job, picture, count, &pyramid, patches->patch);
+    if (status == ASJ_OK) {
+        const hue_job hues = {patches->patch, patches->hue};
+        asj_parallel(context, context->threads, count, 0, find_hues, &hues);
+    }
+    asj_pyramid_free(&context->memory, &pyramid);
+    return status;
+}
+
+void asj_colour_patches_free(asj_memory *memory, asj_colour_patches *patches)
+{
+    asj_release_much(memory, patches->patch);
+    asj_release_much(memory, patches->hue);
+    *patches = (asj_colour_patches){NULL, NULL};
 }

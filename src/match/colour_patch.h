@@ -27,10 +27,18 @@ asj_status asj_small_picture_allocate(asj_context *context, int32_t width, int32
 /* Of an image that asj_image_check() has passed; none of one without colours. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
 asj_status asj_small_picture_create(asj_context *context, const asj_image *image, asj_small_picture *picture);
 
-/* ASJ_COLOUR_PATCH_LENGTH numbers for each of `count` frames, in px of an image that has `scale` px for one of the picture's: such
- * that the product of two patches (asj_patch_product()) is the mean correlation of their channels, in 1/ASJ_UNIT_ONE^2.
- * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED; *patches is NULL then. */
+/* Of each frame: */
+#define ASJ_HUE_ONE 256
+typedef struct asj_colour_patches {
+    int16_t *patch; /* ASJ_COLOUR_PATCH_LENGTH numbers, such that the product of two patches (asj_patch_product()) is the mean
+                     * correlation of their channels, in 1/ASJ_UNIT_ONE^2 */
+    uint16_t *hue;  /* how much its colours say beside grey levels, 0 .. ASJ_HUE_ONE */
+} asj_colour_patches;
+
+/* Of `count` frames, in px of an image that has `scale` px for one of the picture's. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED; free
+ * them either way. */
 asj_status asj_colour_patches_create(asj_context *context, const asj_match_options *options, const asj_small_picture *picture,
-                                     double scale, const asj_affine_frame *frames, uint32_t count, int16_t **patches);
+                                     double scale, const asj_affine_frame *frames, uint32_t count, asj_colour_patches *patches);
+void asj_colour_patches_free(asj_memory *memory, asj_colour_patches *patches);
 
 #endif

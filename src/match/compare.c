@@ -4,7 +4,7 @@
  * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>. Of an L-junction with several length hypotheses the
  * best pair of frames counts.
  *
- * For a geometry the products of grey levels and of colours count half each, where there are colours (wide_shortlist.c).
+ * For a geometry colours have a say where there are any (colour_patch.c).
  *
  * Scores are whole numbers, so that any device ranks alike: <f, g> of unit vectors; 2 <f, g> - <f, f> - <g, g> of others, both in
  * units of 1/ASJ_UNIT_ONE^2; of the paper's patches minus the distance (patch_induced.c). */
@@ -29,12 +29,14 @@ static float squared_distance(const asj_match_options *options, int32_t score)
     return distance2 > 0 ? distance2 : 0;
 }
 
-/* The mean of the products of grey levels and of colours. */
+/* The product of grey levels and, as far as the more colourful one of both frames has a hue, of colours. */
 static int32_t with_colours(const asj_match_run *run, uint32_t f, uint32_t g, int32_t score)
 {
-    const int16_t *left = run->colour_patches[0] + (size_t)f * ASJ_COLOUR_PATCH_LENGTH;
-    const int16_t *right = run->colour_patches[1] + (size_t)g * ASJ_COLOUR_PATCH_LENGTH;
-    return (score + asj_patch_product(left, right, ASJ_COLOUR_PATCH_LENGTH)) / 2;
+    const asj_colour_patches *in1 = &run->colours[0], *in2 = &run->colours[1];
+    const int32_t weight = in1->hue[f] > in2->hue[g] ? in1->hue[f] : in2->hue[g];
+    const int32_t product = asj_patch_product(in1->patch + (size_t)f * ASJ_COLOUR_PATCH_LENGTH,
+                                              in2->patch + (size_t)g * ASJ_COLOUR_PATCH_LENGTH, ASJ_COLOUR_PATCH_LENGTH);
+    return (int32_t)(((int64_t)ASJ_HUE_ONE * score + (int64_t)weight * product) / (ASJ_HUE_ONE + weight));
 }
 
 static asj_pair_score score_frames(const asj_match_run *run, uint32_t i, uint32_t j)
@@ -51,7 +53,7 @@ static asj_pair_score score_frames(const asj_match_run *run, uint32_t i, uint32_
             if (!features2->usable[g])
                 continue;
             int32_t score = score_patches(run->options, patch, asj_patch_at(features2, g, length), length);
-            if (run->colour_patches[0])
+            if (run->colours[0].patch)
                 score = with_colours(run, f, g, score);
             if (score > best.score)
                 best = (asj_pair_score){score, f, g};

@@ -18,7 +18,7 @@ typedef struct asj_match_run {
     int32_t for_geometry;      /* 1: the candidates of two_view.c's longer list, */
     uint32_t most_listed;      /* .. of so many L-junctions of each image, the most meaningful ones and their equals (canonical
                                 * patches); 0: of all */
-    int16_t *colour_patches[2]; /* wide_shortlist.c: what pairs are compared by, too; NULL: by grey levels alone */
+    asj_colour_patches colours[2]; /* wide_shortlist.c: what pairs are compared by, too; NULL: by grey levels alone */
     asj_geometry geometry;     /* two_view.c */
     asj_judge judge;           /* two_view.c: what was accepted, for matches that were no candidates of it */
     int32_t lines_hold;        /* verdict.c: is what lies off its epipolar lines wrong? */

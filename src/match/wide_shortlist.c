@@ -33,7 +33,7 @@ static asj_status make_patches(asj_match_run *run)
         const asj_image_features *image = run->image[side];
         const double scale = image->l_junctions.upsampled ? 4 : 2;
         status = asj_colour_patches_create(run->context, run->options, &image->picture, scale, image->l_junctions.frames,
-                                           image->l_junctions.frame_count, &run->colour_patches[side]);
+                                           image->l_junctions.frame_count, &run->colours[side]);
     }
     return status;
 }
@@ -92,8 +92,6 @@ asj_status asj_wide_shortlist(asj_match_run *run)
 
 void asj_wide_shortlist_free(asj_match_run *run)
 {
-    for (int32_t side = 0; side < 2; side++) {
-        asj_release_much(&run->context->memory, run->colour_patches[side]);
-        run->colour_patches[side] = NULL;
-    }
+    for (int32_t side = 0; side < 2; side++)
+        asj_colour_patches_free(&run->context->memory, &run->colours[side]);
 }

@@ -87,7 +87,7 @@ static void paint(uint8_t *pixels, const double gain[3], const double offset[3])
 }
 
 static void make(asj_context *context, const uint8_t *pixels, double scale, const asj_affine_frame *frames, uint32_t count,
-                 int16_t **patches)
+                 asj_colour_patches *patches)
 {
     const asj_image image = {pixels, ASJ_FORMAT_RGB8, SIDE, SIDE, 0, 0};
     asj_match_options options;
@@ -122,18 +122,18 @@ static void patches_are_normalised_levels(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
     static uint8_t pixels[3 * SIDE * SIDE];
-    int16_t *patches;
+    asj_colour_patches patches = {NULL, NULL};
     paint(pixels, same, nothing);
     make(context, pixels, 2, frames, UNIT_COUNT(frames), &patches);
     for (size_t f = 0; f < UNIT_COUNT(frames); f++)
         for (int32_t c = 0; c < 3; c++) {
             double expected[STEP];
             naive_patch(&frames[f], c, expected);
-            const int16_t *made = patches + f * ASJ_COLOUR_PATCH_LENGTH + c * STEP;
+            const int16_t *made = patches.patch + f * ASJ_COLOUR_PATCH_LENGTH + c * STEP;
             for (int32_t k = 0; k < STEP; k++) /* halved levels are rounded, and are lines between their middles */
                 unit_near("sample", (double)f, c * STEP + k, made[k] * sqrt(3) / ASJ_UNIT_ONE, expected[k], 0.012);
         }
-    asj_release_much(&context->memory, patches);
+    asj_colour_patches_free(&context->memory, &patches);
 }
 
 /* Frames of the image upsampled by two show the same. */
@@ -142,16 +142,16 @@ static void scale_is_that_of_the_frames(void **state)
     asj_context *context = ((unit_fixture *)*state)->context;
     static uint8_t pixels[3 * SIDE * SIDE];
     asj_affine_frame larger[UNIT_COUNT(frames)];
-    int16_t *patches, *of_larger;
+    asj_colour_patches patches = {NULL, NULL}, of_larger = {NULL, NULL};
     paint(pixels, same, nothing);
     for (size_t f = 0; f < UNIT_COUNT(frames); f++)
         larger[f] = (asj_affine_frame){2 * frames[f].x + 0.5, 2 * frames[f].y + 0.5, 2 * frames[f].ax, 2 * frames[f].ay,
                                        2 * frames[f].bx,      2 * frames[f].by};
     make(context, pixels, 2, frames, UNIT_COUNT(frames), &patches);
     make(context, pixels, 4, larger, UNIT_COUNT(frames), &of_larger);
-    assert_memory_equal(patches, of_larger, UNIT_COUNT(frames) * ASJ_COLOUR_PATCH_LENGTH * sizeof *patches);
-    asj_release_much(&context->memory, patches);
-    asj_release_much(&context->memory, of_larger);
+    assert_memory_equal(patches.patch, of_larger.patch, UNIT_COUNT(frames) * ASJ_COLOUR_PATCH_LENGTH * sizeof *patches.patch);
+    asj_colour_patches_free(&context->memory, &patches);
+    asj_colour_patches_free(&context->memory, &of_larger);
 }
 
 static double length(const int16_t *patch)
@@ -164,20 +164,56 @@ static void white_balance_does_not_count(void **state)
     asj_context *context = ((unit_fixture *)*state)->context;
     static uint8_t pixels[2][3 * SIDE * SIDE];
     const double gain[3] = {0.5, 0.9, 1.2}, offset[3] = {60, 10, -20};
-    int16_t *patches[2];
+    asj_colour_patches patches[2] = {{NULL, NULL}, {NULL, NULL}};
     paint(pixels[0], same, nothing);
     paint(pixels[1], gain, offset);
     for (int32_t n = 0; n < 2; n++)
         make(context, pixels[n], 2, frames, UNIT_COUNT(frames), &patches[n]);
     for (size_t f = 0; f < UNIT_COUNT(frames); f++)
         for (size_t g = 0; g < UNIT_COUNT(frames); g++) {
-            const int16_t *left = patches[0] + f * ASJ_COLOUR_PATCH_LENGTH, *right = patches[1] + g * ASJ_COLOUR_PATCH_LENGTH;
+            const int16_t *left = patches[0].patch + f * ASJ_COLOUR_PATCH_LENGTH;
+            const int16_t *right = patches[1].patch + g * ASJ_COLOUR_PATCH_LENGTH;
             /* a floor of one level is added to each standard deviation, and leaves them shorter than 1 */
             const double product = asj_patch_product(left, right, ASJ_COLOUR_PATCH_LENGTH) / (length(left) * length(right));
             assert_true(f == g ? product > 0.995 : product < 0.9);
         }
-    asj_release_much(&context->memory, patches[0]);
-    asj_release_much(&context->memory, patches[1]);
+    asj_colour_patches_free(&context->memory, &patches[0]);
+    asj_colour_patches_free(&context->memory, &patches[1]);
+}
+
+/* HUE (1 - r), HUE 4: 0 where the channels differ by white balance alone, in full where they have nothing in common. */
+static void grey_has_no_hue(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    static uint8_t pixels[3 * SIDE * SIDE];
+    const double shares[] = {0, 0.3, 1}; /* of the other channels' waves */
+    double before = -1;
+    for (size_t n = 0; n < UNIT_COUNT(shares); n++) {
+        asj_colour_patches patches = {NULL, NULL};
+        double sum = 0;
+        for (int32_t k = 0; k < 3 * SIDE * SIDE; k++) {
+            const double x = k / 3 % SIDE, y = k / 3 / SIDE, other = level_at(k % 3, x, y);
+            pixels[k] = (uint8_t)lrint(((1 - shares[n]) * level_at(0, x, y) + shares[n] * other) * (1 - 0.2 * (k % 3)));
+        }
+        make(context, pixels, 2, frames, UNIT_COUNT(frames), &patches);
+        for (size_t f = 0; f < UNIT_COUNT(frames); f++) {
+            const int16_t *p = patches.patch + f * ASJ_COLOUR_PATCH_LENGTH;
+            double own = 0, between = 0;
+            for (int32_t k = 0; k < ASJ_COLOUR_PATCH_LENGTH; k++) {
+                own += (double)p[k] * p[k];
+                between += (double)p[k] * p[(k + STEP) % ASJ_COLOUR_PATCH_LENGTH];
+            }
+            const double hue = 4 * (1 - between / own);
+            unit_near("hue", (double)n, (double)f, patches.hue[f] / (double)ASJ_HUE_ONE, hue < 1 ? hue : 1, 1.0 / ASJ_HUE_ONE);
+            sum += patches.hue[f];
+            if (n == 0)
+                assert_true(patches.hue[f] < 0.02 * ASJ_HUE_ONE);
+        }
+        assert_true(sum > before);
+        before = sum;
+        asj_colour_patches_free(&context->memory, &patches);
+    }
+    assert_true(before > 0.99 * ASJ_HUE_ONE * UNIT_COUNT(frames));
 }
 
 /* --- short lists -------------------------------------------------------------------------------------------------------------- */
@@ -314,7 +350,7 @@ int main(void)
         cmocka_unit_test(small_pictures_are_means),      cmocka_unit_test(some_have_none),
         cmocka_unit_test(patches_are_normalised_levels), cmocka_unit_test(scale_is_that_of_the_frames),
         cmocka_unit_test(white_balance_does_not_count),  cmocka_unit_test(hues_tell_partners_apart),
-        cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(grey_has_no_hue),               cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
