@@ -120,7 +120,7 @@ part rooms-finer "$tool/match_room" --rooms --first-octave -1 --last 48
 part far-as-they-are "$tool/wide_rooms" --poses --first 1000 --last 1399
 part far "$tool/wide_rooms" --poses --stretch 0,0 --first 1000 --last 1399
 part far-no-colours "$tool/wide_rooms" --poses --stretch 0,0 --colours no --first 1000 --last 1399
-part far-fresh "$tool/wide_rooms" --poses --stretch 0,0 --first 5740 --last 5899
+part far-fresh "$tool/wide_rooms" --poses --stretch 0,0 --first 6200 --last 6299
 part far-judged "$tool/wide_rooms" --poses --stretch 0,0 --first 5900 --last 6099
 part near "$tool/wide_rooms" --poses --stretch 0,0 --near --first 3000 --last 3149
 part turned "$tool/wide_rooms" --turned --first 0 --last 99
