@@ -198,7 +198,7 @@ typedef struct asj_match_result {
  * those of a geometry: poses of both orders differ by about what they tell of their errors, and a pair at the limit of chance may
  * be accepted in one order alone. Of matches in upsampled images up to a tenth differ.) Memory:
  * 2.7 bytes per pixel of both images, up to 13 of one while it is prepared, the patches (patch_size^2 x 2 bytes for each frame),
- * with a geometry and colours 384 bytes more for each frame, short lists, up to 400 bytes for each candidate, and who supports
+ * with a geometry and colours 386 bytes more for each frame, short lists, up to 400 bytes for each candidate, and who supports
  * whom, up to 540 MB where all agree with all that is near: two images of 12 megapixels with 55 000 and 60 000 L-junctions and 1.6
  * million candidates took 1.0 GB. Time: all pairs of L-junctions are looked at, so twice as many in either image take four times as
  * long (2 000 junctions of five branches at one point, 20 000 L-junctions that all look alike: some ten seconds). With a geometry,

@@ -20,8 +20,8 @@
  *   epipolar.c       and by the fundamental matrix of all            (../geometry/)
  *   guests.c         matches of junctions of other octaves, which those propose; once more from align.c to epipolar.c
  *   same_corner.c    one match for each corner that several octaves list
- *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, colour_prior.c,
- *                    ../geometry/)
+ *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (wide_shortlist.c, prior.c,
+ *                    colour_prior.c, ../geometry/)
  *   verdict.c        where one is accepted: which matches go, and which come; then guests.c and same_corner.c once more
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond; common_direction.c:
  *                    where they point

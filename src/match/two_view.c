@@ -2,10 +2,10 @@
 /* Geometry decides what texture cannot.
  *
  * Seen from far apart, corners look like each other more than like themselves, and the ratio test leaves nothing. The right
- * partners are among the best WIDE_SHORTLIST, though. So all candidates of such a list, of the MOST_LISTED most meaningful
- * L-junctions of either image, aligned and scored by support, go with their priors (prior.c) to asj_geometry_estimate(), which
- * finds what they have in common. There a location within CLUSTER px of one before it is one place with that, so rows of near ones
- * are one.
+ * partners are among the best WIDE_SHORTLIST, though, most of all where colours have a say (wide_shortlist.c). So all candidates of
+ * such a list, of the MOST_LISTED most meaningful L-junctions of either image, aligned and scored by support, go with their priors
+ * (prior.c) to asj_geometry_estimate(), which finds what they have in common. There a location within CLUSTER px of one before it
+ * is one place with that, so rows of near ones are one.
  *
  * The matches that are there are among the candidates whatever their rank, but those of guests (guests.c), which are alike among
  * themselves. Where a geometry is accepted, and no other one contradicts it, verdict.c says what it makes of the matches. */
