@@ -87,7 +87,7 @@ static const cli_option plot_options[] = {
      "over the pale photographs in grey (the default) or in their colours, or on white"},
     {PLOT_LINES, 0, "plot-lines", "yes|no", "lines from one photograph to the other; yes is the default"},
     {PLOT_EPIPOLAR, 0, "plot-epipolar", "yes|no",
-     "epipolar lines of the matches, where --geometry found an epipolar geometry; no is the default"},
+     "epipolar lines of up to 60 matches, where --geometry found an epipolar geometry; no is the default"},
     {PLOT_LAYOUT, 0, "plot-layout", "auto|beside|below",
      "where the second photograph stands; auto (the default): what fits a screen"},
     {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of an image, 0.01 .. 16; default: small images are enlarged"},

@@ -35,3 +35,30 @@ int cli_epipolar_line(const asj_geometry *geometry, int v, double x, double y, d
     }
     return last > first;
 }
+
+/* How far two lines across one image are from each other: the larger distance of their ends. */
+static double line_distance(const double a[4], const double b[4])
+{
+    const double same = fmax(hypot(a[0] - b[0], a[1] - b[1]), hypot(a[2] - b[2], a[3] - b[3]));
+    const double turned = fmax(hypot(a[0] - b[2], a[1] - b[3]), hypot(a[2] - b[0], a[3] - b[1]));
+    return fmin(same, turned);
+}
+
+/* Gonzalez, Clustering to minimize the maximum intercluster distance (1985). */
+void cli_epipolar_spread(cli_epipolar_pair *pairs, size_t count, size_t most)
+{
+    for (size_t k = 0; k < count; k++)
+        pairs[k].distance = HUGE_VAL;
+    for (size_t chosen = 0; chosen < count && chosen < most; chosen++) {
+        cli_epipolar_pair *next = &pairs[0];
+        for (size_t k = 1; k < count; k++)
+            if (pairs[k].distance > next->distance)
+                next = &pairs[k];
+        next->distance = -1;
+        for (size_t k = 0; k < count; k++) {
+            const double distance = line_distance(next->ends[0], pairs[k].ends[0]) +
+                                    line_distance(next->ends[1], pairs[k].ends[1]);
+            pairs[k].distance = fmin(pairs[k].distance, distance);
+        }
+    }
+}

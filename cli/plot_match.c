@@ -21,6 +21,8 @@
 #define LARGEST_AREA 6.4e7
 #define STUB 12.0         /* px that are drawn of a branch where nothing matches */
 
+enum { EPIPOLAR_LINES = 60 }; /* more hide the photographs; --help and the manual page say how many */
+
 /* A match as it is drawn: in each image a place, where the line ends, and one or two strokes. */
 typedef struct pair {
     double place[2][2];
@@ -35,6 +37,8 @@ typedef struct drawing {
     const cli_plot_match_style *style;
     pair *pairs;
     size_t count, rejected;
+    cli_epipolar_pair *across; /* epipolar lines, of which some are drawn */
+    size_t across_count;
     int32_t beside;
     double scale, line, font;
     int32_t widths[2], heights[2]; /* of the photographs in the plot */
@@ -271,25 +275,41 @@ static void draw_unmatched(cairo_t *cairo, const drawing *d, int v)
     cairo_restore(cairo);
 }
 
-/* In the colour of the match. */
 static int shows_epipolar_lines(const drawing *d)
 {
     const asj_geometry *g = &d->content->result->geometry;
     return d->style->epipolar && g->status == ASJ_GEOMETRY_ACCEPTED && g->model != ASJ_GEOMETRY_HOMOGRAPHY;
 }
 
-static void draw_epipolar_lines(cairo_t *cairo, const drawing *d)
+/* The best match comes first in a result, and its lines are drawn. 0 = no memory */
+static int make_epipolar_lines(drawing *d)
 {
     const asj_geometry *g = &d->content->result->geometry;
-    cairo_set_line_width(cairo, 0.7 * d->line);
-    for (size_t k = 0; k < d->count; k++)
+    d->across = calloc(d->count + 1, sizeof *d->across);
+    for (size_t k = 0; d->across && k < d->count; k++) {
+        cli_epipolar_pair *lines = &d->across[d->across_count];
+        int meets = 1;
         for (int v = 0; v < 2; v++) {
-            double ends[4];
             const double *from = d->pairs[k].place[1 - v];
             const asj_image *image = d->content->images[v];
-            set_color(cairo, d, &d->pairs[k], 1, 0.55);
-            if (cli_epipolar_line(g, v, from[0], from[1], image->width, image->height, ends))
-                draw_stroke(cairo, d, v, ends);
+            meets = meets && cli_epipolar_line(g, v, from[0], from[1], image->width, image->height, lines->ends[v]);
+        }
+        lines->match = k;
+        d->across_count += meets ? 1 : 0;
+    }
+    if (d->across)
+        cli_epipolar_spread(d->across, d->across_count, EPIPOLAR_LINES);
+    return d->across != NULL;
+}
+
+/* In the colour of the match. */
+static void draw_epipolar_lines(cairo_t *cairo, const drawing *d)
+{
+    cairo_set_line_width(cairo, 0.7 * d->line);
+    for (size_t k = 0; k < d->across_count; k++)
+        for (int v = 0; v < 2 && d->across[k].distance < 0; v++) {
+            set_color(cairo, d, &d->pairs[d->across[k].match], 1, 0.55);
+            draw_stroke(cairo, d, v, d->across[k].ends[v]);
         }
 }
 
@@ -329,7 +349,8 @@ static void draw_legend(cairo_t *cairo, const drawing *d)
     const char *what[] = {"matches", "match", "line segments", "line segment"};
     const char *name = what[(d->content->segments ? 2 : 0) + (d->count == 1 ? 1 : 0)];
     const char *order = d->beside ? "left to right" : "top to bottom";
-    const char *lines = shows_epipolar_lines(d) ? "; across: epipolar lines" : "";
+    const char *lines = !shows_epipolar_lines(d) ? "" :
+                        d->across_count > EPIPOLAR_LINES ? "; across: some epipolar lines" : "; across: epipolar lines";
     unsigned long count = (unsigned long)d->count;
     /* the font inside cairo: the same on every machine, and there is always one */
     cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
@@ -341,7 +362,7 @@ static void draw_legend(cairo_t *cairo, const drawing *d)
     const unsigned long found[2] = {(unsigned long)result->l_junction_count1, (unsigned long)result->l_junction_count2};
     if (d->count == 0 && found[0] + found[1] > 0 && d->width >= 40 * d->font)
         snprintf(text, sizeof text, "0 %s%s; grey: the L-junctions, %lu and %lu", name, rejected, found[0], found[1]);
-    else if (d->width >= (56 + (d->rejected ? 10 : 0) + (*lines ? 13 : 0)) * d->font && d->count > 1)
+    else if (d->width >= (56 + (d->rejected ? 10 : 0) + (*lines ? 16 : 0)) * d->font && d->count > 1)
         snprintf(text, sizeof text, "%lu %s   one colour each, by place in the first photograph, %s%s%s%s", count, name, order,
                  d->content->segments ? "" : "; branch b is darker", lines, rejected);
     else
@@ -399,9 +420,10 @@ asj_status cli_plot_match(const char *path, int32_t format, const cli_plot_match
     d.rejected = content->segments ? 0 : content->result->rejected_count;
     lay_out(&d);
     asj_status status = ASJ_ERROR_MEMORY;
-    if (make_pairs(&d))
+    if (make_pairs(&d) && (!shows_epipolar_lines(&d) || make_epipolar_lines(&d)))
         status = cli_plot_file(path, format, d.width, d.height + d.legend_height,
                                &(cli_plot_content){draw, annotate, &d, cli_interrupted}, message, message_size);
+    free(d.across);
     free(d.pairs);
     return status;
 }

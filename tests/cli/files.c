@@ -93,6 +93,25 @@ void write_views(const char *first, const char *second)
     write_flat_views(first, second, 1);
 }
 
+static double tiles(double x, double y)
+{
+    double light = 0.5;
+    for (int k = 0; k < 35; k++) {
+        const int column = k % 7, row = k / 7, level = (13 * column + 29 * row) % 17;
+        const double left = 20 + 41 * column, right = left + 22 + (7 * column + 5 * row) % 9;
+        const double top = 14 + 45 * row, bottom = top + 24 + (5 * column + 3 * row) % 11;
+        const double inside = edge(x, left) * edge(-x, -right) * edge(y, top) * edge(-y, -bottom);
+        light += inside * ((level < 6 || level > 10 ? level / 16.0 : 0.9) - light);
+    }
+    return light;
+}
+
+void write_tiled_views(const char *first, const char *second)
+{
+    write_view(first, tiles, &(view){1, 0, 0, 1});
+    write_view(second, tiles, &(view){1 / VIEW_SCALE, -VIEW_X / VIEW_SCALE, -VIEW_Y / VIEW_SCALE, 1});
+}
+
 int make_views(void **state)
 {
     (void)state;

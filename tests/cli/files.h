@@ -20,6 +20,7 @@ void write_crossing(const char *path);
 void write_views(const char *first, const char *second);
 int make_views(void **state); /* before a group of tests: first.png and second.png */
 void write_flat_views(const char *first, const char *second, int rows); /* so many rows are one, as of a wall seen from below */
+void write_tiled_views(const char *first, const char *second); /* as above, of a wall with 35 rectangles */
 
 void write_coloured_views(const char *first, const char *second); /* PPM, in colours of one luma */
 

@@ -190,6 +190,43 @@ static void epipolar_lines_are_drawn_on_demand(void **state)
     expect_in(result, result->err, "--plot-epipolar: '1' is not yes or no");
 }
 
+/* Of how many strokes of an SVG file this is the opacity. */
+static int count_strokes(const char *path, const char *opacity)
+{
+    static const char key[] = "stroke-opacity";
+    int count = 0;
+    size_t size = 0;
+    char *text = read_text(path, &size);
+    for (const char *at = text; (at = strstr(at, key)) != NULL;) {
+        at += sizeof key - 1;
+        at += strspn(at, ":=\""); /* as a property, or as an attribute: versions of cairo differ */
+        count += strncmp(at, opacity, strlen(opacity)) == 0 && !strchr("0123456789", at[strlen(opacity)]);
+    }
+    free(text);
+    return count;
+}
+
+/* More would hide the photographs. */
+static void of_many_matches_some_have_epipolar_lines(void **state)
+{
+    (void)state;
+    write_tiled_views("many1.png", "many2.png");
+    const outcome *result = run_cli("match", "--geometry", "fundamental", "-p", "many.svg", "--plot-epipolar", "yes", "many1.png",
+                                    "many2.png", NULL);
+    expect_code(result, 0);
+    const char *count = strstr(result->err, "png: ");
+    assert_non_null(count);
+    assert_true(strtol(count + strlen("png: "), NULL, 10) > 60);
+    assert_int_equal(count_strokes("many.svg", "0.55"), 2 * 60);
+    expect_code(run_cli("match", "-q", "--geometry", "fundamental", "-p", "again.svg", "--plot-epipolar", "yes", "many1.png",
+                        "many2.png", NULL), 0);
+    size_t sizes[2];
+    char *one = read_text("many.svg", &sizes[0]), *other = read_text("again.svg", &sizes[1]);
+    assert_string_equal(one, other);
+    free(one);
+    free(other);
+}
+
 static void a_plot_alone_prints_no_matches(void **state)
 {
     (void)state;
@@ -261,6 +298,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(svg_and_pdf_hold_the_photographs),
         cmocka_unit_test(plots_are_repeatable),
         cmocka_unit_test(epipolar_lines_are_drawn_on_demand),
+        cmocka_unit_test(of_many_matches_some_have_epipolar_lines),
         cmocka_unit_test(a_plot_alone_prints_no_matches),
         cmocka_unit_test(junctions_are_drawn_where_nothing_matches),
         cmocka_unit_test(plots_take_the_place_of_no_other_file),
