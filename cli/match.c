@@ -272,7 +272,7 @@ static int print_dark(const run *r)
     return count;
 }
 
-/* Were colours there to be looked at, and were not? */
+/* Were edges of colours there to be looked at, and were not? */
 static int has_colours_left(const run *r)
 {
     const cli_match_arguments *arguments = r->arguments;
@@ -280,7 +280,7 @@ static int has_colours_left(const run *r)
                           r->result->geometry.status != ASJ_GEOMETRY_NOT_ASKED;
     int has = !by_itself && !arguments->detect_options.colours;
     for (int v = 0; v < 2; v++)
-        has = has && !arguments->junctions[v] && cli_has_colours(&r->inputs[v].pixels);
+        has = has && !arguments->junctions[v] && cli_has_colour_edges(&r->inputs[v].pixels);
     return has;
 }
 

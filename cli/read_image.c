@@ -98,22 +98,44 @@ void cli_warn_of_gray(cli_session *session, const char *command, const char *nam
     session->warned_of_gray = 1;
 }
 
-static int is_coloured(const unsigned char *pixel, int32_t width)
+enum { BLOCK = 8 };          /* px; the mean of a block has an eighth of the noise of a pixel */
+#define COLOUR_CHANGE 8.0    /* levels of red - green or blue - green, from a block to the next */
+
+/* Means of red - green and blue - green. */
+static void mean_colour(const asj_image *image, int32_t left, int32_t top, double mean[2])
 {
-    for (int32_t x = 0; x < width; x++, pixel += 3)
-        if (pixel[0] != pixel[1] || pixel[1] != pixel[2])
-            return 1;
-    return 0;
+    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)3 * image->width;
+    int32_t sums[2] = {0, 0};
+    for (int32_t y = top; y < top + BLOCK; y++)
+        for (int32_t x = left; x < left + BLOCK; x++) {
+            const unsigned char *pixel = (const unsigned char *)image->data + y * stride + (ptrdiff_t)3 * x;
+            sums[0] += pixel[0] - pixel[1];
+            sums[1] += pixel[2] - pixel[1];
+        }
+    for (int k = 0; k < 2; k++)
+        mean[k] = (double)sums[k] / (BLOCK * BLOCK);
 }
 
-int cli_has_colours(const asj_image *image)
+static int colours_differ(const double one[2], const asj_image *image, int32_t left, int32_t top)
 {
+    double other[2];
+    if (left + BLOCK > image->width || top + BLOCK > image->height)
+        return 0;
+    mean_colour(image, left, top, other);
+    return fabs(one[0] - other[0]) >= COLOUR_CHANGE || fabs(one[1] - other[1]) >= COLOUR_CHANGE;
+}
+
+int cli_has_colour_edges(const asj_image *image)
+{
+    double mean[2];
     if (!image->data || (image->format != ASJ_FORMAT_RGB8 && image->format != ASJ_FORMAT_BGR8))
         return 0;
-    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)3 * image->width;
-    for (int32_t y = 0; y < image->height; y++)
-        if (is_coloured((const unsigned char *)image->data + y * stride, image->width))
-            return 1;
+    for (int32_t y = 0; y + BLOCK <= image->height; y += BLOCK)
+        for (int32_t x = 0; x + BLOCK <= image->width; x += BLOCK) {
+            mean_colour(image, x, y, mean);
+            if (colours_differ(mean, image, x + BLOCK, y) || colours_differ(mean, image, x, y + BLOCK))
+                return 1;
+        }
     return 0;
 }
 

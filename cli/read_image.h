@@ -14,8 +14,8 @@ int cli_read_image(cli_session *session, const cli_common *common, const char *p
 /* Warns, once in a session, where --colours has nothing to look at: colours of 16 bits and of floats are read as grey levels. */
 void cli_warn_of_gray(cli_session *session, const char *command, const char *name, const asj_image *image);
 
-/* Does any pixel of it have a colour that --colours looks at? */
-int cli_has_colours(const asj_image *image);
+/* Does it have colours that --colours looks at, and do they change from one place to the next, as at edges? */
+int cli_has_colour_edges(const asj_image *image);
 
 /* The brightest level of a 16-bit image far darker than the white that its format has; 0: there is none, or its white was given.
  * Samples of 10 or 12 bits are such images, in which corners are too weak to be found. */

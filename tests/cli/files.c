@@ -142,6 +142,20 @@ static void write_coloured_view(const char *path, const view *v)
     free(ppm);
 }
 
+void write_smooth_colours(const char *path, int change)
+{
+    char *ppm = malloc(64 + (size_t)3 * SCENE_WIDTH * SCENE_HEIGHT);
+    assert_non_null(ppm);
+    size_t size = (size_t)snprintf(ppm, 64, "P6 %d %d 255\n", SCENE_WIDTH, SCENE_HEIGHT);
+    for (int k = 0; k < SCENE_WIDTH * SCENE_HEIGHT; k++) {
+        ppm[size++] = (char)(unsigned char)(150 + change * (k % SCENE_WIDTH) / SCENE_WIDTH);
+        ppm[size++] = (char)(unsigned char)120;
+        ppm[size++] = (char)(unsigned char)90;
+    }
+    write_bytes(path, ppm, size);
+    free(ppm);
+}
+
 void write_coloured_views(const char *first, const char *second)
 {
     write_coloured_view(first, &(view){1, 0, 0, 1});

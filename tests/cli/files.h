@@ -23,6 +23,7 @@ void write_flat_views(const char *first, const char *second, int rows); /* so ma
 void write_tiled_views(const char *first, const char *second); /* as above, of a wall with 35 rectangles */
 
 void write_coloured_views(const char *first, const char *second); /* PPM, in colours of one luma */
+void write_smooth_colours(const char *path, int change);              /* PPM, from the left to the right side */
 
 /* The scene in 16-bit samples of which this is white. */
 void write_deep_scene(const char *path, int white);

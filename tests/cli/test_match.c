@@ -392,6 +392,19 @@ static void colours_are_hinted_at(void **state)
     assert_true(found.count >= 10);
 }
 
+/* One colour all over, or one that goes over into another from side to side, has no corners for --colours to find. */
+static void smooth_colours_are_not_hinted_at(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        write_smooth_colours("smooth.ppm", k ? 60 : 0);
+        const outcome *result = run_cli("match", "-o", "c.csv", "smooth.ppm", "smooth.ppm", NULL);
+        expect_code(result, 0);
+        expect_in(result, result->err, "no corner that is surer than chance");
+        assert_null(strstr(result->err, "try --colours"));
+    }
+}
+
 /* Where they have matches enough, whole images are looked at upsampled too: more matches, of the same places within what soft and
  * coarse edges are known to (3 px here), told in JSON. With --upsample-from it is left, or is not reached. */
 static void whole_images_are_upsampled_by_themselves(void **state)
@@ -765,6 +778,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_glancing_view_is_stretched_by_itself),
         cmocka_unit_test(colours_are_looked_at_by_themselves),
         cmocka_unit_test(colours_are_hinted_at),
+        cmocka_unit_test(smooth_colours_are_not_hinted_at),
         cmocka_unit_test(whole_images_are_upsampled_by_themselves),
         cmocka_unit_test(a_stretch_goes_with_images_alone),
         cmocka_unit_test(features_take_the_place_of_images),
