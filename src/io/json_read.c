@@ -18,6 +18,9 @@ typedef struct json_reader {
     const asj_message *message;
     asj_junction_list *list;
     int has_schema, has_image, has_junctions, has_edges;
+    size_t sizeless; /* line of an image without a size, which only a line of an image that failed may have; 0 = none */
+    json_t *error;   /* why it failed */
+    size_t error_line;
 } json_reader;
 
 static char skip_space(json_reader *reader)
@@ -257,6 +260,11 @@ static asj_status read_schema(json_reader *reader, const json_t *value)
     return ASJ_OK;
 }
 
+static asj_status fail_size(const json_reader *reader, size_t line)
+{
+    return asj_line_fail(reader->message, line, "\"image\" needs a \"width\" and a \"height\" from 1 to %d", ASJ_MAX_SIDE);
+}
+
 static asj_status read_image(json_reader *reader, const json_t *value)
 {
     json_int_t width = json_integer_value(json_object_get(value, "width"));
@@ -265,9 +273,12 @@ static asj_status read_image(json_reader *reader, const json_t *value)
     if (reader->has_image)
         return fail_second(reader, "image");
     reader->has_image = 1;
+    if (json_is_object(value) && !json_object_get(value, "width") && !json_object_get(value, "height")) {
+        reader->sizeless = reader->line;
+        return ASJ_OK;
+    }
     if (width < 1 || height < 1 || width > ASJ_MAX_SIDE || height > ASJ_MAX_SIDE)
-        return asj_line_fail(reader->message, reader->line, "\"image\" needs a \"width\" and a \"height\" from 1 to %d",
-                             ASJ_MAX_SIDE);
+        return fail_size(reader, reader->line);
     reader->list->width = (int32_t)width;
     reader->list->height = (int32_t)height;
     return ASJ_OK;
@@ -283,7 +294,8 @@ static asj_status read_entry(json_reader *reader, const char *key)
         return read_list(reader, read_junction, key, &reader->has_junctions);
     if (!strcmp(key, "edges"))
         return read_list(reader, read_edge, key, &reader->has_edges);
-    if (strcmp(key, "schema") && strcmp(key, "image")) {
+    const int is_error = !strcmp(key, "error") && !reader->error && skip_space(reader) == '"';
+    if (strcmp(key, "schema") && strcmp(key, "image") && !is_error) {
         const char *stop;
         status = find_end(reader, &stop);
         if (status == ASJ_OK)
@@ -291,7 +303,10 @@ static asj_status read_entry(json_reader *reader, const char *key)
         return status;
     }
     status = read_value(reader, &value);
-    if (status == ASJ_OK)
+    if (status == ASJ_OK && is_error) {
+        reader->error = json_incref(value);
+        reader->error_line = reader->line;
+    } else if (status == ASJ_OK)
         status = strcmp(key, "schema") ? read_image(reader, value) : read_schema(reader, value);
     json_decref(value);
     return status;
@@ -320,7 +335,8 @@ static asj_status read_object(json_reader *reader)
             status = expect_more(reader, '}', &more);
     }
     if (status == ASJ_OK && (skip_space(reader) || reader->next < reader->end))
-        status = asj_line_fail(reader->message, reader->line, "text after the end");
+        status = asj_line_fail(reader->message, reader->line, "text after the end%s",
+                               skip_space(reader) == '{' ? ": of lines of JSON, which are an image each, a file may have one" : "");
     return status;
 }
 
@@ -338,9 +354,18 @@ static asj_status check_locations(const json_reader *reader)
     return ASJ_OK;
 }
 
+/* What asj_junctions_write_failed_line() writes in place of junctions, and what nobody writes. */
+static asj_status check_failure(const json_reader *reader)
+{
+    if (reader->has_schema && !reader->has_junctions && reader->error)
+        return asj_line_fail(reader->message, reader->error_line, "no junctions, but why the image has none: %s",
+                             json_string_value(reader->error));
+    return reader->sizeless ? fail_size(reader, reader->sizeless) : ASJ_OK;
+}
+
 asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const asj_message *message)
 {
-    json_reader reader = {(const char *)input->bytes, (const char *)input->bytes + input->size, 1, message, list, 0, 0, 0, 0};
+    json_reader reader = {(const char *)input->bytes, (const char *)input->bytes + input->size, 1, message, list, 0, 0, 0, 0, 0, NULL, 0};
     asj_c_locale locale;
     asj_status status = asj_c_locale_begin(&locale, message);
 
@@ -348,6 +373,9 @@ asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const 
         return status;
     status = read_object(&reader);
     asj_c_locale_end(&locale);
+    if (status == ASJ_OK)
+        status = check_failure(&reader);
+    json_decref(reader.error);
     if (status == ASJ_OK && (!reader.has_schema || !reader.has_junctions))
         status = asj_line_fail(message, reader.line, "not a junction file: no \"schema\" or no \"junctions\"");
     if (status == ASJ_OK)
