@@ -71,6 +71,7 @@ fully_static() {
 }
 
 # subproject: a project that asks for the static library gets it, and no shared one is built; files are read without the program.
+# The project may put several files into one, its own.
 subproject() {
     mkdir -p "$work/user/subprojects"
     cp "$work/core.c" "$work/user"
@@ -81,7 +82,7 @@ asj = dependency('asj', static: true, fallback: 'asj',
   default_options: ['io=enabled', 'cli=disabled', 'tests=disabled', 'optimization=0'])
 executable('core', 'core.c', dependencies: asj)
 END
-    { meson setup "$work/user/build" "$work/user" --force-fallback-for=asj && meson compile -C "$work/user/build"; } \
+    { meson setup "$work/user/build" "$work/user" --force-fallback-for=asj -Dunity=on && meson compile -C "$work/user/build"; } \
         > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
     [ "$("$work/user/build/core")" = "$version" ] || { echo 'the program of the parent project fails'; exit 1; }
     [ -z "$(find "$work/user/build" -name '*.so*')" ] || { echo 'static: true has built a shared library'; exit 1; }
