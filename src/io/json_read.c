@@ -365,7 +365,8 @@ static asj_status check_failure(const json_reader *reader)
 
 asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const asj_message *message)
 {
-    json_reader reader = {(const char *)input->bytes, (const char *)input->bytes + input->size, 1, message, list, 0, 0, 0, 0, 0, NULL, 0};
+    json_reader reader = {.next = (const char *)input->bytes, .end = (const char *)input->bytes + input->size, .line = 1,
+                          .message = message, .list = list};
     asj_c_locale locale;
     asj_status status = asj_c_locale_begin(&locale, message);
 
