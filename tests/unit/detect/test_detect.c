@@ -497,6 +497,35 @@ static void test_reuse(void **state)
     free(pixels);
 }
 
+/* Upside down, with an odd number of rows: candidates stand at the same pixels, and directions of sectors mirror each other. All
+ * that comes after has no side that it prefers, so that what is found is the same, but for numbers that round to either side. */
+static void test_upside_down(void **state)
+{
+    enum { WIDTH = 479, HEIGHT = 359 };
+    const fixture *f = *state;
+    asj_detect_options options;
+    asj_detection *found[2];
+    uint32_t same = 0;
+    uint8_t *pixels = unit_room_picture(0, WIDTH, HEIGHT), *turned = malloc(WIDTH * HEIGHT);
+    assert_non_null(turned);
+    for (int y = 0; y < HEIGHT; y++)
+        memcpy(turned + y * WIDTH, pixels + (HEIGHT - 1 - y) * WIDTH, WIDTH);
+    asj_detect_options_init(&options);
+    options.octaves = 1; /* an octave has an even number of rows, or half a row less than the image */
+    for (int k = 0; k < 2; k++) {
+        const asj_image image = unit_gray8(k ? turned : pixels, WIDTH, HEIGHT);
+        assert_int_equal(asj_detect(f->context, &image, &options, &found[k]), ASJ_OK);
+    }
+    for (uint32_t i = 0; i < found[0]->junction_count; i++)
+        same += nearest(found[1], (double)found[0]->junctions[i].x, HEIGHT - 1 - (double)found[0]->junctions[i].y, 0.02) != NULL;
+    assert_true(found[0]->junction_count > 100);
+    assert_true(same * 50 >= found[0]->junction_count * 49);
+    asj_detection_free(&found[0]);
+    asj_detection_free(&found[1]);
+    free(turned);
+    free(pixels);
+}
+
 /* Turned by 90 degrees the picture has the same junctions, turned. Bins of directions and scan lines are not symmetric under that
  * turn, so nearly all, and to a tenth of a pixel. */
 static void test_quarter_turn(void **state)
@@ -744,7 +773,8 @@ int main(void)
         cmocka_unit_test(test_shapes), cmocka_unit_test(test_sharp), cmocka_unit_test(test_crossings),
         cmocka_unit_test(test_tiny_and_flat),
         cmocka_unit_test(test_noise),  cmocka_unit_test(test_borders),   cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_upside_down),
+        cmocka_unit_test(test_formats),
         cmocka_unit_test(test_independent_octaves), cmocka_unit_test(test_small_squares), cmocka_unit_test(test_upsampled_limit),
         cmocka_unit_test(test_minimum_length),
         cmocka_unit_test(test_radii), cmocka_unit_test(test_branches_at_the_border),
