@@ -259,15 +259,18 @@ static int has_no_answer(const asj_match_result *result)
     return result->match_count == 0 && !(result->geometry.status == ASJ_GEOMETRY_AMBIGUOUS && result->rejected_count > 0);
 }
 
-/* Images far darker than white, which explain that there is little or nothing. Returns how many. */
-static int print_dark(const run *r)
+/* Images far darker or brighter than white, which explain that there is little or nothing. Returns how many. */
+static int print_white(const run *r)
 {
     int count = 0;
     for (int v = 0; v < 2; v++) {
         const uint32_t level = cli_dark_level(&r->inputs[v].pixels);
         if (level > 0)
             cli_note_dark(r->inputs[v].name, level);
-        count += level > 0;
+        const double bright = cli_bright_level(&r->inputs[v].pixels);
+        if (bright > 0)
+            cli_note_bright(r->inputs[v].name, bright);
+        count += level > 0 || bright > 0;
     }
     return count;
 }
@@ -378,7 +381,7 @@ static int run_all(run *r)
         print_summary(r);
         print_looks(r);
         print_geometry(r);
-        if ((r->result->match_count >= FEW || print_dark(r) == 0) && has_no_answer(r->result))
+        if ((r->result->match_count >= FEW || print_white(r) == 0) && has_no_answer(r->result))
             print_hint(r);
     }
     if (result == CLI_SUCCESS && r->arguments->common.time)

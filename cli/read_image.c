@@ -145,12 +145,41 @@ uint32_t cli_dark_level(const asj_image *image)
     return image->white > 0 || level > DARK ? 0 : level;
 }
 
+double cli_bright_level(const asj_image *image)
+{
+    size_t brighter = 0;
+    float level, most = 0;
+    if (!image->data || image->format != ASJ_FORMAT_GRAY_FLOAT || image->white > 0)
+        return 0;
+    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)sizeof level * image->width;
+    for (int32_t y = 0; y < image->height; y++)
+        for (int32_t x = 0; x < image->width; x++) {
+            memcpy(&level, (const unsigned char *)image->data + y * stride + (ptrdiff_t)sizeof level * x, sizeof level);
+            brighter += level > 1;
+            most = level > most ? level : most;
+        }
+    return 2 * brighter > (size_t)image->width * (size_t)image->height ? (double)most : 0;
+}
+
 uint32_t cli_likely_white(uint32_t level)
 {
     uint32_t white = 1023; /* no camera has fewer bits in 16 */
     while (white < level)
         white = 2 * white + 1;
     return white;
+}
+
+double cli_likely_float_white(double level)
+{
+    double white = 255;
+    while (white < level)
+        white = 2 * white + 1;
+    return white;
+}
+
+void cli_note_bright(const char *name, double level)
+{
+    cli_note("%s: most pixels are brighter than white, 1 in floats: --white %.10g?", name, cli_likely_float_white(level));
 }
 
 void cli_note_dark(const char *name, uint32_t level)

@@ -21,10 +21,16 @@ int cli_has_colour_edges(const asj_image *image);
  * Samples of 10 or 12 bits are such images, in which corners are too weak to be found. */
 uint32_t cli_dark_level(const asj_image *image);
 
-/* The white of a camera whose brightest level this is: 1023, 4095. */
-uint32_t cli_likely_white(uint32_t level);
+/* The brightest level of an image of floats more than half of which is brighter than white, and so has no corners; 0: it is none,
+ * or its white was given. Samples of 0 to 255 are such images. */
+double cli_bright_level(const asj_image *image);
 
-/* Says so of an image, with what may help. */
+/* The white of samples whose brightest level this is: 1023, 4095; of floats from 255 on. */
+uint32_t cli_likely_white(uint32_t level);
+double cli_likely_float_white(double level);
+
+/* Say so of an image, with what may help. */
 void cli_note_dark(const char *name, uint32_t level);
+void cli_note_bright(const char *name, double level);
 
 #endif

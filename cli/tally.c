@@ -20,14 +20,20 @@ void cli_tally_image(cli_tally *tally, const char *name, const asj_image *image,
                      const asj_detect_options *options)
 {
     const uint32_t dark = cli_dark_level(image);
-    const int bare = dark == 0 && detection->junction_count == 0 && image->width >= SMALLEST && image->height >= SMALLEST;
+    const double bright = cli_bright_level(image);
+    const int is_white_known = dark == 0 && !(bright > 0), is_large = image->width >= SMALLEST && image->height >= SMALLEST;
+    const int bare = is_white_known && is_large && detection->junction_count == 0;
     tally->dark += dark > 0;
     tally->dark_level = dark > tally->dark_level ? dark : tally->dark_level;
+    tally->bright += bright > 0;
+    tally->bright_level = bright > tally->bright_level ? bright : tally->bright_level;
     tally->bare += bare != 0;
     if (tally->total > 1)
         return;
     if (dark > 0)
         cli_note_dark(name, dark);
+    else if (bright > 0)
+        cli_note_bright(name, bright);
     else if (bare && is_strict(options))
         cli_note("%s: " WEAKER, name);
 }
@@ -35,7 +41,7 @@ void cli_tally_image(cli_tally *tally, const char *name, const asj_image *image,
 void cli_tally_print(const cli_tally *tally, const asj_detect_options *options, const char *file)
 {
     const int named = file && strcmp(file, "-") != 0;
-    char failed[48] = "", bare[160] = "", dark[96] = "";
+    char failed[48] = "", bare[160] = "", dark[96] = "", bright[96] = "";
     if (tally->failed > 0)
         snprintf(failed, sizeof failed, ", %zu failed", tally->failed);
     if (tally->bare > 0)
@@ -43,6 +49,9 @@ void cli_tally_print(const cli_tally *tally, const asj_detect_options *options, 
     if (tally->dark > 0)
         snprintf(dark, sizeof dark, ", %zu far darker than white (--white %lu?)", tally->dark,
                  (unsigned long)cli_likely_white(tally->dark_level));
-    cli_note("%zu image%s done%s%s%s%s%s", tally->done, tally->done == 1 ? "" : "s", failed, bare, dark, named ? " -> " : "",
-             named ? file : "");
+    if (tally->bright > 0)
+        snprintf(bright, sizeof bright, ", %zu with most pixels brighter than white (--white %.10g?)", tally->bright,
+                 cli_likely_float_white(tally->bright_level));
+    cli_note("%zu image%s done%s%s%s%s%s%s", tally->done, tally->done == 1 ? "" : "s", failed, bare, dark, bright,
+             named ? " -> " : "", named ? file : "");
 }

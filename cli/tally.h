@@ -12,6 +12,8 @@ typedef struct cli_tally {
     size_t bare;          /* without a junction, and large enough for one */
     size_t dark;          /* far darker than white */
     uint32_t dark_level;  /* the brightest of these */
+    size_t bright;        /* most of it brighter than white */
+    double bright_level;
 } cli_tally;
 
 /* After an image: counts what there is to say of it, or says it where there is only one image. */

@@ -178,6 +178,19 @@ void write_deep_scene(const char *path, int white)
         fail_msg("%s", message);
 }
 
+void write_float_scene(const char *path, float white)
+{
+    static char bytes[64 + sizeof(float) * SCENE_WIDTH * SCENE_HEIGHT];
+    const uint16_t order = 1; /* of the bytes of a number: the sign says which */
+    size_t size = (size_t)snprintf(bytes, 64, "Pf %d %d %s\n", SCENE_WIDTH, SCENE_HEIGHT, *(const char *)&order ? "-1.0" : "1.0");
+    for (int i = 0; i < SCENE_WIDTH * SCENE_HEIGHT; i++) {
+        const float level = (float)(0.4 + 0.55 * rectangle(i % SCENE_WIDTH, i / SCENE_WIDTH)) * white;
+        memcpy(bytes + size, &level, sizeof level);
+        size += sizeof level;
+    }
+    write_bytes(path, bytes, size);
+}
+
 void write_crossing(const char *path)
 {
     write_light(path, crossing);

@@ -28,6 +28,9 @@ void write_smooth_colours(const char *path, int change);              /* PPM, fr
 /* The scene in 16-bit samples of which this is white. */
 void write_deep_scene(const char *path, int white);
 
+/* The scene in floats of which this is white, as PFM. */
+void write_float_scene(const char *path, float white);
+
 /* A PNG of one grey level. */
 void write_constant(const char *path, int width, int height);
 

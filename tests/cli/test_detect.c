@@ -549,6 +549,29 @@ static void white_can_be_told(void **state)
     expect_in(result, result->err, "--white: '0' is not a number in 1e-06 .. 1e+09");
 }
 
+/* Floats of 0 to 255, where white is 1: all is white, which is told, until white is. */
+static void white_of_floats_can_be_told(void **state)
+{
+    (void)state;
+    write_float_scene("unit.pfm", 1);
+    write_float_scene("bytes.pfm", 255);
+    write_float_scene("words.pfm", 65535);
+    const outcome *result = run_cli("detect", "unit.pfm", NULL);
+    expect_in(result, result->err, "unit.pfm: 4 junctions\n");
+    assert_null(strstr(result->err, "--white"));
+    result = run_cli("detect", "bytes.pfm", NULL);
+    expect_in(result, result->err, "bytes.pfm: most pixels are brighter than white, 1 in floats: --white 255?\n");
+    assert_null(strstr(result->err, "weaker corners"));
+    result = run_cli("detect", "--white", "255", "bytes.pfm", NULL);
+    expect_in(result, result->err, "bytes.pfm: 4 junctions\n");
+    assert_null(strstr(result->err, "--white"));
+    result = run_cli("detect", "-d", "floats", "unit.pfm", "bytes.pfm", "words.pfm", NULL);
+    expect_in(result, result->err, "\n3 images done, 2 with most pixels brighter than white (--white 65535?)\n");
+    result = run_cli("match", "bytes.pfm", "unit.pfm", NULL);
+    expect_in(result, result->err, "bytes.pfm: most pixels are brighter than white");
+    assert_null(strstr(result->err, "hint"));
+}
+
 /* Colours of 16 bits are read as grey levels: who asks for them is told, once. */
 static void deep_images_have_no_colours(void **state)
 {
@@ -609,6 +632,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
         cmocka_unit_test(directions_are_written_on_request),
         cmocka_unit_test(white_can_be_told),
+        cmocka_unit_test(white_of_floats_can_be_told),
         cmocka_unit_test(deep_images_have_no_colours),
         cmocka_unit_test(many_images_have_one_line_of_hints),
         cmocka_unit_test(a_camera_of_another_image_is_refused), cmocka_unit_test(lines_come_each_once),
