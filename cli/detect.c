@@ -26,6 +26,7 @@ typedef struct run {
     asj_image_file *mask; /* of all images; NULL: none */
     cli_json_lines lines; /* of all images */
     double read_ms, lines_ms;
+    asj_vanishing_points points; /* of the image in hand, with --vanishing-points */
     int camera_doubted; /* once for all images */
     cli_tally tally;
 } run;
@@ -43,8 +44,7 @@ static asj_status write_features(run *r, const char *path, const asj_image *pixe
     return status;
 }
 
-static asj_status find_directions(run *r, const asj_image *pixels, const asj_detection *detection, asj_vanishing_points *points,
-                                  char *message)
+static asj_status find_directions(run *r, const asj_image *pixels, const asj_detection *detection, char *message)
 {
     asj_vanishing_options options;
     asj_vanishing_options_init(&options);
@@ -52,7 +52,7 @@ static asj_status find_directions(run *r, const asj_image *pixels, const asj_det
     options.width = pixels->width;
     options.height = pixels->height;
     const asj_status status = asj_find_vanishing_points(r->session.context, detection->junctions, detection->junction_count,
-                                                        &options, points);
+                                                        &options, &r->points);
     if (status != ASJ_OK)
         snprintf(message, CLI_MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
     return status;
@@ -64,14 +64,13 @@ static asj_status write_junctions(run *r, const char *image, const char *path, c
     const int32_t format = cli_detect_file_format(r->arguments);
     asj_detection_report report = {.detection = detection, .options = &r->arguments->options, .image_name = image,
                                    .segments = segments};
-    asj_vanishing_points points;
     if (format == CLI_FILE_FEATURES)
         return write_features(r, path, pixels, detection, message);
     if (r->arguments->vanishing_points) {
-        const asj_status status = find_directions(r, pixels, detection, &points, message);
+        const asj_status status = find_directions(r, pixels, detection, message);
         if (status != ASJ_OK)
             return status;
-        report.vanishing_points = &points;
+        report.vanishing_points = &r->points;
     }
     if (format == CLI_FILE_JSON_LINES)
         return cli_json_lines_add(&r->lines, &report, message, CLI_MESSAGE_SIZE);
@@ -104,16 +103,26 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     return result;
 }
 
-static void print_summary(const char *image, const cli_output *output, const asj_detection *detection,
+/* What JSON has of --vanishing-points, in short. */
+static void describe_directions(const asj_vanishing_points *points, char *text, size_t size)
+{
+    const int used = snprintf(text, size, ", %d direction%s", (int)points->count, points->count == 1 ? "" : "s");
+    if (points->focal_source == ASJ_FOCAL_FOUND)
+        snprintf(text + used, size - (size_t)used, ", focal length %.0f px", points->camera.fx);
+}
+
+static void print_summary(const run *r, const char *image, const cli_output *output, const asj_detection *detection,
                           const asj_segment_list *segments)
 {
     const char *junctions = output->junctions && strcmp(output->junctions, "-") != 0 ? output->junctions : NULL;
-    char lines[64] = "";
+    char lines[64] = "", directions[96] = "";
+    if (r->arguments->vanishing_points)
+        describe_directions(&r->points, directions, sizeof directions);
     if (segments)
         snprintf(lines, sizeof lines, ", %lu line%s", (unsigned long)segments->count, segments->count == 1 ? "" : "s");
-    cli_note("%s: %lu junction%s%s%s%s%s%s", image, (unsigned long)detection->junction_count,
-             detection->junction_count == 1 ? "" : "s", lines, junctions || output->plot ? " -> " : "", junctions ? junctions : "",
-             junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
+    cli_note("%s: %lu junction%s%s%s%s%s%s%s", image, (unsigned long)detection->junction_count,
+             detection->junction_count == 1 ? "" : "s", lines, directions, junctions || output->plot ? " -> " : "",
+             junctions ? junctions : "", junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
 }
 
 static int finish_image(run *r, const char *image, const cli_output *output, const asj_image *pixels,
@@ -124,7 +133,7 @@ static int finish_image(run *r, const char *image, const cli_output *output, con
     double write_ms = cli_now_ms() - start;
     cli_progress_clear(&r->session.progress);
     if (result == CLI_SUCCESS && !r->arguments->common.quiet) {
-        print_summary(image, output, detection, segments);
+        print_summary(r, image, output, detection, segments);
         cli_tally_image(&r->tally, image, pixels, detection, &r->arguments->options);
     }
     if (result == CLI_SUCCESS && r->arguments->common.time) {

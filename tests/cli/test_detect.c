@@ -159,8 +159,10 @@ static void directions_are_written_on_request(void **state)
     expect_code(result, 0);
     expect_in(result, result->out, "\"vanishing_points\": {\"focal_source\": \"given\", \"camera\": [600");
     expect_in(result, result->out, "\"points\": []");
+    expect_in(result, result->err, "scene.png: 4 junctions, 0 directions\n");
     result = run_cli("detect", "-f", "json", "scene.png", NULL);
     assert_null(strstr(result->out, "vanishing_points"));
+    assert_null(strstr(result->err, "direction"));
     result = run_cli("detect", "--vanishing-points", "scene.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "--vanishing-points go into JSON");
