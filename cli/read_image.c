@@ -78,6 +78,8 @@ int cli_read_image(cli_session *session, const cli_common *common, const char *p
     char message[CLI_MESSAGE_SIZE] = "";
     const asj_status status = asj_image_file_read(path, common->max_pixels, file, message, sizeof message);
     const char *result = status == ASJ_ERROR_FORMAT ? find_result(path) : NULL;
+    if (status == ASJ_ERROR_FORMAT && cli_is_special(path) && strstr(message, "features (.asjf)"))
+        result = "features (.asjf) from a pipe: 'asj-cli match' takes them from a file, whose beginning it looks at first";
     if (status == ASJ_ERROR_LIMIT)
         name_limit_option(message, sizeof message);
     if (status != ASJ_OK)

@@ -5,6 +5,7 @@
 
 #include <asj/match.h>
 
+#include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -15,6 +16,8 @@
 #include <cmocka.h>
 
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 static int count_lines(const char *text)
 {
@@ -266,6 +269,26 @@ static void bad_images_are_refused(void **state)
     expect_refusal(run_cli("match", "--junctions2", "missing.asj", "first.png", "second.png", NULL), "asj-cli: missing.asj: ", "");
 }
 
+/* match with a pipe that has what a file has: `match <(cat file) second.png`. */
+static const outcome *run_with_pipe(const char *path)
+{
+    size_t size = 0;
+    char *bytes = read_bytes(path, &size);
+    assert_non_null(bytes);
+    assert_int_equal(mkfifo("pipe.asjf", 0666), 0);
+    const pid_t writer = fork();
+    assert_true(writer >= 0);
+    if (writer == 0) {
+        const int file = open("pipe.asjf", O_WRONLY);
+        _exit(write(file, bytes, size) < 0); /* the reader need not want all of it: what comes of that does not count */
+    }
+    const outcome *result = run_cli("match", "-o", "never.csv", "pipe.asjf", "second.png", NULL);
+    waitpid(writer, NULL, 0);
+    unlink("pipe.asjf");
+    free(bytes);
+    return result;
+}
+
 static void bad_features_are_refused(void **state)
 {
     (void)state;
@@ -288,6 +311,7 @@ static void bad_features_are_refused(void **state)
     expect_refusal(run_cli("match", "-o", "never.csv", "--descriptor", "sift", "good.asjf", "second.png", NULL),
                    "asj-cli: good.asjf, second.png: ", "the features of image 1 were made with descriptor raw, not sift");
     expect_refusal(run_cli("detect", "-o", "never.json", "good.asjf", NULL), "asj-cli: good.asjf: ", "a file of features");
+    expect_refusal(run_with_pipe("good.asjf"), "asj-cli: pipe.asjf: ", "takes them from a file");
     const outcome *result = run_cli("match", "-o", "never.csv", "--junctions1", "good.asj", "good.asjf", "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "good.asj changes nothing: good.asjf is a file of features");
