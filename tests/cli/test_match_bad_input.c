@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli match with wrong usage and with files that are no good: one line that names file, line and cause, and nothing written. */
+#define _POSIX_C_SOURCE 200809L
 #include "files.h"
 #include "program.h"
 
 #include <asj/match.h>
 
-#include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
