@@ -281,7 +281,8 @@ static int shows_epipolar_lines(const drawing *d)
     return d->style->epipolar && g->status == ASJ_GEOMETRY_ACCEPTED && g->model != ASJ_GEOMETRY_HOMOGRAPHY;
 }
 
-/* The best match comes first in a result, and its lines are drawn. 0 = no memory */
+/* Of a match, or of the first ends of a line segment, which show the same thing; middles do so from one side only. The best match
+ * comes first in a result, and its lines are drawn. 0 = no memory */
 static int make_epipolar_lines(drawing *d)
 {
     const asj_geometry *g = &d->content->result->geometry;
@@ -290,7 +291,7 @@ static int make_epipolar_lines(drawing *d)
         cli_epipolar_pair *lines = &d->across[d->across_count];
         int meets = 1;
         for (int v = 0; v < 2; v++) {
-            const double *from = d->pairs[k].place[1 - v];
+            const double *from = d->pairs[k].stroke[1 - v][0];
             const asj_image *image = d->content->images[v];
             meets = meets && cli_epipolar_line(g, v, from[0], from[1], image->width, image->height, lines->ends[v]);
         }

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli match --plot: formats, sizes, and what is drawn where. */
 #include "files.h"
+#include "match_table.h"
 #include "plot_pixels.h"
 #include "program.h"
 
 #include <asj/io.h>
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -190,20 +192,72 @@ static void epipolar_lines_are_drawn_on_demand(void **state)
     expect_in(result, result->err, "--plot-epipolar: '1' is not yes or no");
 }
 
-/* Of how many strokes of an SVG file this is the opacity. */
-static int count_strokes(const char *path, const char *opacity)
+/* Behind the next opacity of a stroke in an SVG file that is this one; NULL = there is none. */
+static char *find_stroke(char *text, const char *opacity)
 {
     static const char key[] = "stroke-opacity";
+    const size_t length = strlen(opacity);
+    for (char *at = text; (at = strstr(at, key)) != NULL;) {
+        at += sizeof key - 1;
+        at += strspn(at, ":=\""); /* as a property, or as an attribute: versions of cairo differ */
+        if (strncmp(at, opacity, length) == 0 && !strchr("0123456789", at[length]))
+            return at;
+    }
+    return NULL;
+}
+
+static int count_strokes(const char *path, const char *opacity)
+{
     int count = 0;
     size_t size = 0;
     char *text = read_text(path, &size);
-    for (const char *at = text; (at = strstr(at, key)) != NULL;) {
-        at += sizeof key - 1;
-        at += strspn(at, ":=\""); /* as a property, or as an attribute: versions of cairo differ */
-        count += strncmp(at, opacity, strlen(opacity)) == 0 && !strchr("0123456789", at[strlen(opacity)]);
-    }
+    for (char *at = text; (at = find_stroke(at, opacity)) != NULL;)
+        count++;
     free(text);
     return count;
+}
+
+/* Where the first stroke of this opacity begins and ends. */
+static void read_stroke(const char *path, const char *opacity, double ends[4])
+{
+    size_t size = 0;
+    char *text = read_text(path, &size), *at = find_stroke(text, opacity), *end;
+    assert_non_null(at);
+    while (at > text && strncmp(at, "<path", 5) != 0)
+        at--;
+    at = strstr(at, " d=\"M ");
+    assert_non_null(at);
+    at += strlen(" d=\"M ");
+    for (int k = 0; k < 4; k++) {
+        at += strcspn(at, "-.0123456789");
+        ends[k] = strtod(at, &end);
+        assert_true(end > at);
+        at = end;
+    }
+    free(text);
+}
+
+/* Of line segments the ends correspond, not their middles: the line of the best one goes through its first end. */
+static void epipolar_lines_go_through_ends_of_segments(void **state)
+{
+    static table lines;
+    double line[4];
+    (void)state;
+    expect_code(run_cli("match", "-q", "--geometry", "fundamental", "--lines", "-o", "lines.csv", "-p", "lines.svg", "--plot-scale",
+                        "8", "--plot-layout", "beside", "--plot-epipolar", "yes", "first.png", "second.png", NULL), 0);
+    read_csv("lines.csv", &lines);
+    assert_true(lines.count > 0);
+    const double *row = &lines.rows[0][AX1];
+    read_stroke("lines.svg", "0.55", line);
+    const double length = hypot(line[2] - line[0], line[3] - line[1]);
+    const double nx = -(line[3] - line[1]) / length, ny = (line[2] - line[0]) / length;
+    double away[2]; /* of the first end and of the middle, in px of the image */
+    for (int k = 0; k < 2; k++) {
+        const double x = k ? 0.5 * (row[0] + row[2]) : row[0], y = k ? 0.5 * (row[1] + row[3]) : row[1];
+        away[k] = fabs(nx * (x + 0.5 - line[0] / SCALE) + ny * (y + 0.5 - line[1] / SCALE));
+    }
+    assert_true(away[0] < 1.5);
+    assert_true(away[1] > 3);
 }
 
 /* More would hide the photographs. */
@@ -298,6 +352,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(svg_and_pdf_hold_the_photographs),
         cmocka_unit_test(plots_are_repeatable),
         cmocka_unit_test(epipolar_lines_are_drawn_on_demand),
+        cmocka_unit_test(epipolar_lines_go_through_ends_of_segments),
         cmocka_unit_test(of_many_matches_some_have_epipolar_lines),
         cmocka_unit_test(a_plot_alone_prints_no_matches),
         cmocka_unit_test(junctions_are_drawn_where_nothing_matches),
