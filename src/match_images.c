@@ -8,7 +8,7 @@
  * Upsampled. With junctions of octave -1 photographs have three times the matches (match/upsampled.c, which asks the images' own
  * matches whether those hold), in several times the time. options->upsample_from own matches are asked, so that pairs without
  * anything in common are answered as before; where they leave a motion open, none is needed, and without cameras one. A pose is
- * estimated again, from more matches, in 1.8 times the time, and match/upsampled_geometry.c says which one is told. (Rooms seen
+ * estimated again, from more matches, in 1.8 times the time, and match/looks.c says which one is told. (Rooms seen
  * from far apart, 1000 to 1399, as they are and so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at
  * 5, 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3 81.7; as they are decided now 356, 2, 84.0 86.6 87.9.) With half octaves
  * (options->upsampled_half_octaves) sixteen pairs have 4468 of 4567 right in place of 3088 of 3148, in 1.3 to 2.3 times the time,
@@ -34,7 +34,7 @@
  *
  * Colours. Where a geometry is asked, and neither look has one that is sure and tells a motion, the detector looks at colours, too
  * (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright there are corners that only these
- * show. match/upsampled_geometry.c says what is believed. (Rooms 1000 to 1399: accepted 369 for 360, poses 368, of these out by
+ * show. match/looks.c says what is believed. (Rooms 1000 to 1399: accepted 369 for 360, poses 368, of these out by
  * more than 3 degrees 1, for 359 and 2; of 252 unrelated pairs 19 for 17.)
  *
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more

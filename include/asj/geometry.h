@@ -112,7 +112,10 @@ typedef struct asj_geometry {
                               * lens sees obeys, too. The rotation and its block of the covariance are known, has_pose is 0. With
                               * cameras or find_focal; model auto or, where it is degenerate then, essential */
     int32_t reserved_integer;
-    double reserved[2];
+    double picture_agreement;/* how well the images agree between the matches, of what they could: about 1 as well as possible, 0.6
+                              * where they know nothing (bare walls, no plane), 0.3 and less where only corners are alike; 0:
+                              * nobody has looked (asj_geometry_estimate(); model fundamental). src/geometry/picture_agreement.c */
+    double reserved;
 } asj_geometry;
 
 /* Estimates the two-view geometry of candidate matches.

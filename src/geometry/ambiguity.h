@@ -10,17 +10,9 @@
  * a rival that has -190 to -350; of 1083 pairs of rooms none is accepted beside one of -66 or less.) */
 #define ASJ_SURE_RIVAL (-100)
 
-/* Takes the evidence from geometries that colours and pictures contradict in favour of others: what is best then is the answer.
- * Errors: memory. */
-asj_status asj_strike_out(asj_estimation *e);
-
 /* The finalist with the largest evidence that contradicts number `best`, whose probabilities are in scratch afterwards, and that
  * neither colours nor pictures contradict; -1 = none. *doubt: 1 when they are rather for it. */
 int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt);
-
-/* Do colours and pictures contradict another geometry in favour of the one whose rival was asked for last, and whose probabilities
- * are in scratch? */
-int32_t asj_contradicts(asj_estimation *e, const asj_model *other);
 
 /* May the rival be the right one as well? inliers: of the best one. */
 int32_t asj_is_ambiguous(const asj_estimation *e, int32_t best, int32_t rival, int32_t doubt, double inliers);

@@ -14,6 +14,7 @@
  * accepted none without a pose has fewer than 17.) */
 #include "answer.h"
 #include "ambiguity.h"
+#include "contradiction.h"
 #include "core/angle.h"
 #include "core/watch.h"
 #include "evidence.h"
@@ -245,9 +246,10 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     const int32_t second = asj_strongest_rival(e, best, &doubt);
     if (asj_watch_end(e->set.watch) != ASJ_OK)
         return ASJ_ERROR_CANCELLED; /* rivals that nobody has looked at */
+    result->picture_agreement = asj_agreement_of_first(e, &e->finalists[best]);
     if (second >= 0)
         describe_rival(e, second, result);
-    if (result->log10_nfa > log10(e->options->epsilon))
+    if (result->log10_nfa > log10(e->options->epsilon) || asj_pictures_disagree_with_first(e, result->log10_nfa))
         return ASJ_OK;
     result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;
     if (second >= 0 && asj_is_ambiguous(e, best, second, doubt, result->inliers))

@@ -5,7 +5,7 @@
 
 #include "directions.h"
 #include "judge.h"
-#include "core/pyramid.h"
+#include "picture.h"
 
 #include <asj/geometry.h>
 
@@ -18,7 +18,8 @@ typedef struct asj_geometry_hints {
     asj_directions_list directions[2]; /* of each image's edges, count 0 = none; options->directions are taken before them */
     const asj_edge_list *edges;        /* straight ones of both images, where their focal length is looked for; NULL = not
                                         * known */
-    const asj_pyramid *pictures[2];    /* what the images look like (picture_vote.c); NULL = not known */
+    asj_picture pictures[2];           /* what the images look like (picture_look.c), with as many channels; 0 of these = not
+                                        * known */
 } asj_geometry_hints;
 
 /* asj_geometry_estimate() with that; hints and judge may be NULL. judge: written where the geometry is accepted. */

@@ -5,7 +5,7 @@
 
 #include "adjust.h"
 #include "focal.h"
-#include "picture_vote.h"
+#include "picture_look.h"
 #include "search.h"
 
 #define ASJ_MOST_KINDS 3
@@ -22,9 +22,10 @@ typedef struct asj_estimation {
     int32_t again; /* 1: these were found when they were looked for once more */
     asj_adjust_scratch scratch;
     double *other; /* probabilities under a second geometry */
-    double *elsewhere; /* ambiguity.c: of each candidate, how sure its places are matched with something else */
-    double *vote;  /* colour_vote.c, ambiguity.c: four numbers of each place */
+    double *elsewhere; /* contradiction.c: of each candidate, how sure its places are matched with something else */
+    double *vote;  /* colour_vote.c, contradiction.c: four numbers of each place */
     asj_pictures *pictures; /* NULL: nobody has shown them */
+    double agreement[2];    /* of their looks (picture_agreement.h) */
     asj_focal_search *focal_search; /* NULL: nobody asks for it */
     asj_focal focal;
     asj_focal rotation_focal; /* the same, of a camera that only turns */

@@ -8,11 +8,11 @@
  *   focal.c       the same for a row of focal lengths (focal_prior.c, focal_profile.c), where none is known and it is asked for
  *   rivals.c      what explains as much without the candidates of the best one
  *   evidence.c    how often chance brings as much
- *   ambiguity.c   which of these are contradicted (colour_vote.c, picture_vote.c, upright.c); whether one may be right as well
+ *   strike_out.c  what is contradicted (contradiction.c: by colour_vote.c, picture_vote.c, picture_agreement.c, upright.c)
+ *   ambiguity.c   whether another one may be right as well
  *   period.c      whether all that is matched repeats
  *   answer.c      which kind, and what is told of it
  *   model.c       what moves when a geometry moves */
-#include "ambiguity.h"
 #include "answer.h"
 #include "estimate.h"
 #include "estimation.h"
@@ -23,6 +23,7 @@
 #include "pure_rotation.h"
 #include "rivals.h"
 #include "stop.h"
+#include "strike_out.h"
 
 #include <math.h>
 #include <string.h>
@@ -240,7 +241,7 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
 static asj_status make_scratch(asj_estimation *e, const asj_geometry_hints *hints)
 {
     asj_memory *memory = &e->context->memory;
-    const int32_t *count = e->set.place_count, shown = hints && hints->pictures[0] && hints->pictures[1];
+    const int32_t *count = e->set.place_count, shown = hints && hints->pictures[0].channel_count > 0;
     e->other = asj_allocate(memory, (size_t)e->set.count, sizeof *e->other);
     e->elsewhere = asj_allocate(memory, (size_t)e->set.count, sizeof *e->elsewhere);
     e->vote = asj_allocate(memory, (size_t)(count[0] > count[1] ? count[0] : count[1]), 4 * sizeof *e->vote);

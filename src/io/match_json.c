@@ -110,7 +110,7 @@ static void put_geometry(asj_json_output *json, const asj_geometry *g)
     if (g->status == ASJ_GEOMETRY_NOT_ASKED)
         return;
     if (accepted)
-        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:b}",
+        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:o, s:b}",
                           "model", asj_geometry_model_name(g->model), "matrix", numbers(g->matrix, 9),
                           "rotation", g->has_pose ? numbers(g->rotation, 9) : json_null(),
                           "translation", g->has_pose ? numbers(g->translation, 3) : json_null(),
@@ -119,7 +119,8 @@ static void put_geometry(asj_json_output *json, const asj_geometry *g)
                           "cameras", has_cameras ? cameras_value(g->cameras) : json_null(), "focal",
                           has_cameras ? json_pack("[f, f]", g->cameras[0].fx, g->cameras[1].fx) : json_null(), "focal_sd",
                           g->focal_sd > 0 ? json_real(g->focal_sd) : json_null(), "log10_nfa", g->log10_nfa,
-                          "inliers", g->inliers, "ambiguous", 0);
+                          "inliers", g->inliers, "picture_agreement",
+                          g->picture_agreement > 0 ? json_real(g->picture_agreement) : json_null(), "ambiguous", 0);
     asj_json_put(json, ",\n\"geometry\": ", value, JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"geometry_status\": ", json_string(asj_geometry_status_name(g->status)), 0);
     if (g->status == ASJ_GEOMETRY_AMBIGUOUS && g->has_rival)

@@ -24,7 +24,8 @@ static int is_sound_corner(const asj_l_junction *l)
 static int is_sound_geometry(const asj_geometry *g)
 {
     const asj_camera *a = &g->cameras[0], *b = &g->cameras[1];
-    const double numbers[] = {a->fx, a->fy, a->cx, a->cy, b->fx, b->fy, b->cx, b->cy, g->focal_sd, g->log10_nfa, g->inliers};
+    const double numbers[] = {a->fx, a->fy, a->cx, a->cy, b->fx, b->fy, b->cx, b->cy, g->focal_sd, g->log10_nfa, g->inliers,
+                              g->picture_agreement};
     if (g->status == ASJ_GEOMETRY_AMBIGUOUS && g->has_rival)
         return isfinite(g->log10_nfa) && isfinite(g->rival_log10_nfa) && asj_all_finite(g->rotation, 9) &&
                asj_all_finite(g->translation, 3) && asj_all_finite(g->rival_rotation, 9) && asj_all_finite(g->rival_translation, 3);

@@ -5,27 +5,12 @@
 
 #include "affine.h"
 #include "core/context.h"
+#include "small_picture.h"
 
-#include <asj/image.h>
 #include <asj/match.h>
 
 #define ASJ_COLOUR_PATCH_SIDE 8
 #define ASJ_COLOUR_PATCH_LENGTH (3 * ASJ_COLOUR_PATCH_SIDE * ASJ_COLOUR_PATCH_SIDE)
-
-/* An image at half its size, in colours. */
-typedef struct asj_small_picture {
-    uint8_t *level; /* all of red, then green, then blue, each row by row: means of 2 x 2 pixels; NULL: there is none */
-    int32_t width, height;
-} asj_small_picture;
-
-/* Bytes of the levels. */
-size_t asj_small_picture_bytes(const asj_small_picture *picture);
-
-/* Room for that of an image of so many pixels; none of one that is a pixel wide or high. ASJ_ERROR_MEMORY. */
-asj_status asj_small_picture_allocate(asj_context *context, int32_t width, int32_t height, asj_small_picture *picture);
-
-/* Of an image that asj_image_check() has passed; none of one without colours. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
-asj_status asj_small_picture_create(asj_context *context, const asj_image *image, asj_small_picture *picture);
 
 /* Of each frame: */
 #define ASJ_HUE_ONE 256

@@ -19,6 +19,7 @@
 #include "pair_list.h"
 #include "prior.h"
 #include "room_directions.h"
+#include "shown_pictures.h"
 #include "support.h"
 #include "verdict.h"
 #include "wide_shortlist.h"
@@ -102,7 +103,6 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
     for (int32_t k = 0; k < 18 && known; k++)
         given += fabs(options->directions[k / 9][k % 9]);
     for (int32_t side = 0; side < 2; side++) {
-        hints->pictures[side] = &run->image[side]->pyramid;
         options->widths[side] = run->image[side]->pyramid.width[0];
         options->heights[side] = run->image[side]->pyramid.height[0];
     }
@@ -131,6 +131,8 @@ static asj_status estimate(asj_match_run *run, asj_wide_run *w)
     asj_status status = asj_candidate_priors(&w->run, w->probability, w->colours);
     if (status == ASJ_OK)
         status = complete_options(run, &options, &hints, w->edges);
+    if (status == ASJ_OK)
+        status = asj_show_pictures(run, &w->shown, hints.pictures);
     if (status != ASJ_OK)
         return status;
     for (int32_t side = 0; side < 2; side++)
@@ -174,5 +176,6 @@ asj_status asj_apply_geometry(asj_match_run *run)
     asj_release(memory, w.place[1]);
     asj_release(memory, w.edges[0].list);
     asj_release(memory, w.edges[1].list);
+    asj_shown_pictures_free(memory, &w.shown);
     return status;
 }

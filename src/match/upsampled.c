@@ -19,7 +19,7 @@
  * And the images' matches say where those of the upsampled ones are looked for (expected.c).
  * Of two matches at one place then one stays (same_place.c).
  * One geometry judges both, and where the images leave it open or the two are at odds it says which ones are, whether or not
- * matches come again (upsampled_geometry.c).
+ * matches come again (looks.c).
  * Matches that come again, of ten pairs that match: .41 to .85 where the upsampled images are right in 97 of 100 and more, .63
  * where they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30: all looked for anywhere.
  * Looked for where they are expected .59 to .84 of six pairs. */

@@ -5,6 +5,7 @@
 
 #include "geometry/directions.h"
 #include "match_run.h"
+#include "shown_pictures.h"
 
 /* The longer list of candidates, and what the geometry says of it (two_view.c). */
 typedef struct asj_wide_run {
@@ -16,6 +17,7 @@ typedef struct asj_wide_run {
     double *branches;   /* of each candidate: geometry/estimate.h */
     uint32_t *place[2]; /* of each location */
     asj_edge_list edges[2]; /* of either image, where a focal length is looked for */
+    asj_shown_pictures shown;
 } asj_wide_run;
 
 /* Choices that it contradicts become run->rejected, the others have their probability, and new ones come: see verdict.c. */

@@ -14,8 +14,8 @@
  * to be known (0).
  * --near: the cameras are 1 to 15 degrees apart. --turned: they stand in one place; error: of the rotation, and no pose is right,
  * since there is no direction of a translation. --draw: another draw of the images' noise. --seed: of the samples. --poses: log10
- * NFA of the strongest rival, and how far rotation and translation are out, in brackets as told (the largest standard deviation of
- * either). --colours: the detector always looks at them, or asj_match_images() never.
+ * NFA of the strongest rival, how well the pictures agree (asj_geometry), and how far rotation and translation are out, in brackets
+ * as told (the largest standard deviation of either). --colours: the detector always looks at them, or asj_match_images() never.
  * --check: exit 1 when fewer poses (--turned: rotations) are right, within 3 degrees, than below, or more are wrong, or too many
  * matches are; of cameras whose focal length is found a few poses may be, for what is not known of it. */
 #define _POSIX_C_SOURCE 200809L
@@ -150,6 +150,8 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
         printf("  focal length %.0f (%.0f), sd %.3f", g->cameras[0].fx, pair->cameras[0].focal, g->focal_sd);
     if (set->poses && g->has_rival)
         printf("  second %.1f", g->rival_log10_nfa);
+    if (set->poses && g->picture_agreement > 0)
+        printf("  agreement %.2f", g->picture_agreement);
     if (set->poses && accepted && (g->has_pose || g->only_turns))
         print_pose(g, pair);
     puts("");

@@ -36,6 +36,7 @@
 #include "match/match_options.h"
 #include "match/prior.h"
 #include "match/room_directions.h"
+#include "match/shown_pictures.h"
 #include "match/support.h"
 #include "match/wide_shortlist.h"
 #include "wide_pair.h"
@@ -71,6 +72,7 @@ typedef struct stage {
     asj_geometry_candidate *given;
     double *probability, *colours, *branches;
     asj_geometry_hints hints;
+    asj_shown_pictures shown;
     uint32_t *place[2];
     uint8_t *right;   /* of each candidate: its aligned point is right; 2 = its map too */
 } stage;
@@ -140,11 +142,12 @@ static asj_status make_candidates(stage *s)
     for (int v = 0; v < 2; v++) {
         s->place[v] = get(s->run.image[v]->l_junctions.location_count, sizeof *s->place[v]);
         cluster(&s->run.image[v]->l_junctions, s->place[v]);
-        s->hints.pictures[v] = &s->run.image[v]->pyramid;
         if (status == ASJ_OK)
             status = asj_room_directions(s->run.context, s->run.image[v], &s->options.geometry.cameras[v],
                                          &s->hints.directions[v]);
     }
+    if (status == ASJ_OK)
+        status = asj_show_pictures(&s->run, &s->shown, s->hints.pictures);
     size_t kept = 0;
     for (size_t k = 0; k < count; k++) {
         const asj_candidate *c = &s->run.candidates.list[k];
@@ -333,6 +336,7 @@ static asj_status one_pair(const settings *set, const synth_wide_pair *pair)
     asj_release(&set->context->memory, s.run.candidates.list);
     asj_wide_shortlist_free(&s.run);
     asj_support_free(&set->context->memory, &s.run.support);
+    asj_shown_pictures_free(&set->context->memory, &s.shown);
     free(s.given);
     free(s.probability);
     free(s.colours);

@@ -11,6 +11,7 @@
 #include "match/match_options.h"
 #include "match/prior.h"
 #include "match/room_directions.h"
+#include "match/shown_pictures.h"
 #include "match/support.h"
 #include "match/wide_shortlist.h"
 #include "measure.h"
@@ -59,6 +60,7 @@ typedef struct steps {
     asj_geometry_candidate *given;
     double *probability, *colours;
     asj_geometry_hints hints;
+    asj_shown_pictures shown;
     asj_geometry found;
 } steps;
 
@@ -66,6 +68,7 @@ static void free_steps(asj_memory *memory, steps *s)
 {
     asj_release(memory, s->run.candidates.list);
     asj_wide_shortlist_free(&s->run);
+    asj_shown_pictures_free(memory, &s->shown);
     asj_support_free(memory, &s->run.support);
     asj_release(memory, s->given);
     asj_release(memory, s->probability);
@@ -102,9 +105,7 @@ static asj_status make_priors(steps *s)
     }
     s->run.candidates.count = kept;
     s->hints.colours = s->run.image[0]->colours && s->run.image[1]->colours ? s->colours : NULL;
-    for (int32_t v = 0; v < 2; v++)
-        s->hints.pictures[v] = &s->run.image[v]->pyramid;
-    return status;
+    return status == ASJ_OK ? asj_show_pictures(&s->run, &s->shown, s->hints.pictures) : status;
 }
 
 static asj_status find_directions(steps *s)

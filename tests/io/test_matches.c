@@ -406,10 +406,13 @@ static void json_has_the_rotation_of_a_turn(void **state)
         g->covariance[6 * (k / 3) + k % 3] = covariance[k];
     for (int32_t only_turns = 0; only_turns < 2; only_turns++) {
         g->only_turns = only_turns;
+        g->picture_agreement = 0.75 * only_turns;
         json_t *root = read_json(write_report("turn.json", ASJ_FILE_JSON)), *value = need(root, "geometry");
         json_t *told = need(value, "turn");
         assert_true(json_is_null(need(value, "rotation")) && json_is_null(need(value, "translation")));
         assert_true(json_is_null(need(value, "covariance")) && json_is_object(told) == only_turns);
+        assert_true(only_turns ? json_real_value(need(value, "picture_agreement")) == 0.75
+                               : json_is_null(need(value, "picture_agreement")));
         for (size_t k = 0; k < 9 && only_turns; k++) {
             assert_true(json_number_value(json_array_get(need(told, "rotation"), k)) == turn[k]);
             assert_true(json_number_value(json_array_get(need(told, "covariance"), k)) == covariance[k]);
@@ -534,6 +537,9 @@ static void results_that_cannot_be_read_are_refused(void **state)
     result.geometry.cameras[1].cy = NAN;
     expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "geometry");
     result.geometry.cameras[1].cy = 0;
+    result.geometry.picture_agreement = NAN;
+    expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "geometry");
+    result.geometry.picture_agreement = 0;
     result.geometry.status = ASJ_GEOMETRY_AMBIGUOUS; /* of which JSON has both motions */
     result.geometry.has_rival = 1;
     {

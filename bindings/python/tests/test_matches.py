@@ -187,12 +187,12 @@ def test_rival_of_a_geometry() -> None:
     found = read_geometry(record)
     assert found is not None and not found and found.status == "ambiguous"
     assert found.rival_log10_nfa is None and found.rival_rotation is None and found.rival_translation is None
-    assert found.cameras is None and found.focal == (0, 0)
-    record.has_rival, record.rival_log10_nfa = 1, -25.5
+    assert found.cameras is None and found.focal == (0, 0) and found.picture_agreement is None
+    record.has_rival, record.rival_log10_nfa, record.picture_agreement = 1, -25.5, 0.75
     record.rival_rotation = [0, -1, 0, 1, 0, 0, 0, 0, 1]
     record.rival_translation = [0, 0, -1]
     found = read_geometry(record)
-    assert found is not None and found.rival_log10_nfa == -25.5
+    assert found is not None and found.rival_log10_nfa == -25.5 and found.picture_agreement == 0.75
     assert found.rival_rotation is not None and (found.rival_rotation @ (1, 0, 0) == (0, 1, 0)).all()
     assert found.rival_translation is not None and (found.rival_translation == (0, 0, -1)).all()
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Two geometries of a wall of tiles, of which the second is shifted: when that is a rival (a partner within 8 px is no other one),
- * and whether what the tiles look like says which one is wrong. */
+ * and whether what the tiles look like says which one is wrong, or that one is. */
 #include "unit_test.h"
 
 #include "geometry/ambiguity.h"
+#include "geometry/contradiction.h"
 #include "geometry/estimation.h"
 #include "geometry/pairs.h"
+#include "geometry/strike_out.h"
 
 #define TILE 40
 #define WIDTH (16 * TILE)
@@ -70,8 +72,12 @@ static asj_estimation *prepare(asj_context *context, double shift, asj_geometry_
     return e;
 }
 
+static asj_pyramid pyramids[2][ASJ_MOST_CHANNELS];
+
 static void release(asj_context *context, asj_estimation *e)
 {
+    for (int32_t k = 0; k < 2 * ASJ_MOST_CHANNELS; k++)
+        asj_pyramid_free(&context->memory, &pyramids[k / ASJ_MOST_CHANNELS][k % ASJ_MOST_CHANNELS]);
     asj_pictures_free(&context->memory, e->pictures);
     asj_adjust_scratch_free(&context->memory, &e->scratch);
     asj_release(&context->memory, e->other);
@@ -125,59 +131,74 @@ static void test_sure_rival_makes_ambiguous(void **state)
     }
 }
 
-/* A wall of tiles whose grey levels differ by up to `contrast`, the second picture with another exposure. */
-static void paint(int32_t which, int32_t contrast, uint8_t *pixels)
+/* A wall of tiles whose levels differ by up to `contrast`, the second picture with another exposure. */
+static void paint(int32_t which, uint64_t seed, int32_t contrast, uint8_t *pixels)
 {
     synth_random random;
-    int32_t grey[WIDTH / TILE * HEIGHT / TILE];
-    synth_random_seed(&random, 7);
-    for (size_t k = 0; k < sizeof grey / sizeof *grey; k++)
-        grey[k] = (int32_t)synth_random_between(&random, 100, 100 + contrast);
+    int32_t level[WIDTH / TILE * HEIGHT / TILE];
+    synth_random_seed(&random, seed);
+    for (size_t k = 0; k < sizeof level / sizeof *level; k++)
+        level[k] = (int32_t)synth_random_between(&random, 100, 100 + contrast);
     for (int32_t y = 0; y < HEIGHT; y++)
         for (int32_t x = 0; x < WIDTH; x++) {
-            const int32_t line = x % TILE < 2 || y % TILE < 2, tile = grey[y / TILE * (WIDTH / TILE) + x / TILE];
+            const int32_t line = x % TILE < 2 || y % TILE < 2, tile = level[y / TILE * (WIDTH / TILE) + x / TILE];
             pixels[y * WIDTH + x] = (uint8_t)((line ? 60 : tile) * (which ? 8 : 10) / 10);
         }
 }
 
-/* Is the second geometry a rival when the pictures are looked at? Is the first one, when that one is called the best? */
-static void ask(asj_context *context, int32_t contrast, int32_t rivals[2])
+/* A wall in so many channels, of those contrasts. */
+static void show(asj_context *context, asj_estimation *e, int32_t channels, const int32_t *contrasts)
 {
-    static uint8_t pixels[2][WIDTH * HEIGHT];
-    asj_pyramid pyramids[2];
-    asj_geometry_options options;
-    asj_estimation *e = prepare(context, TILE, &options);
+    static uint8_t pixels[WIDTH * HEIGHT];
+    asj_picture of[2];
     for (int32_t k = 0; k < 2; k++) {
-        const asj_image image = {pixels[k], ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
-        paint(k, contrast, pixels[k]);
-        assert_int_equal(asj_pyramid_create(context, &image, 0.8, &pyramids[k]), ASJ_OK);
+        of[k] = (asj_picture){.channel_count = channels, .scale = 1, .width = WIDTH, .height = HEIGHT};
+        for (int32_t c = 0; c < channels; c++) {
+            const asj_image image = {pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
+            paint(k, 7 + (uint64_t)c, contrasts[c], pixels);
+            assert_int_equal(asj_pyramid_create(context, &image, 0.8, &pyramids[k][c]), ASJ_OK);
+            of[k].channels[c] = &pyramids[k][c];
+        }
     }
-    const asj_pyramid *of[2] = {&pyramids[0], &pyramids[1]};
     e->pictures = asj_pictures_create(&context->memory, of, e->set.count);
     assert_non_null(e->pictures);
+}
+
+/* Is the second geometry a rival when the pictures are looked at? Is the first one, when that one is called the best? */
+static void ask(asj_context *context, int32_t channels, const int32_t *contrasts, int32_t rivals[2])
+{
+    asj_geometry_options options;
+    asj_estimation *e = prepare(context, TILE, &options);
+    show(context, e, channels, contrasts);
     for (int32_t best = 0; best < 2; best++) {
         int32_t doubt;
         rivals[best] = asj_strongest_rival(e, best, &doubt);
     }
-    for (int32_t k = 0; k < 2; k++)
-        asj_pyramid_free(&context->memory, &pyramids[k]);
     release(context, e);
 }
 
 static void test_pictures_tell_tiles_from_others(void **state)
 {
     const unit_fixture *f = *state;
+    const int32_t grey[1] = {60}, colours[3] = {0, 0, 60};
     int32_t rivals[2];
-    ask(f->context, 60, rivals);
+    ask(f->context, 1, grey, rivals);
     assert_int_equal(rivals[0], -1); /* what is shifted has other tiles */
+    assert_int_equal(rivals[1], 0);
+    ask(f->context, 3, colours, rivals);
+    assert_int_equal(rivals[0], -1);
     assert_int_equal(rivals[1], 0);
 }
 
 static void test_pictures_of_like_tiles_say_nothing(void **state)
 {
     const unit_fixture *f = *state;
+    const int32_t none[3] = {0, 0, 0};
     int32_t rivals[2];
-    ask(f->context, 0, rivals);
+    ask(f->context, 1, none, rivals);
+    assert_int_equal(rivals[0], 1);
+    assert_int_equal(rivals[1], 0);
+    ask(f->context, 3, none, rivals);
     assert_int_equal(rivals[0], 1);
     assert_int_equal(rivals[1], 0);
 }
@@ -185,25 +206,39 @@ static void test_pictures_of_like_tiles_say_nothing(void **state)
 /* The wrong one is in front: the right one takes its place. */
 static void test_wrong_one_in_front_is_struck_out(void **state)
 {
-    static uint8_t pixels[2][WIDTH * HEIGHT];
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_pyramid pyramids[2];
+    const int32_t contrast = 60;
     asj_geometry_options options;
     asj_estimation *e = prepare(context, TILE, &options);
-    for (int32_t k = 0; k < 2; k++) {
-        const asj_image image = {pixels[k], ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
-        paint(k, 60, pixels[k]);
-        assert_int_equal(asj_pyramid_create(context, &image, 0.8, &pyramids[k]), ASJ_OK);
-    }
-    const asj_pyramid *of[2] = {&pyramids[0], &pyramids[1]};
-    e->pictures = asj_pictures_create(&context->memory, of, e->set.count);
+    show(context, e, 1, &contrast);
     e->finalists[1].evidence = 130;
     assert_int_equal(asj_strike_out(e), ASJ_OK);
     assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), 0);
     assert_false(e->finalists[1].evidence > -HUGE_VAL);
-    for (int32_t k = 0; k < 2; k++)
-        asj_pyramid_free(&context->memory, &pyramids[k]);
     release(context, e);
+}
+
+/* A geometry needs no rival to be wrong: pictures that know something disagree, and so little evidence is not believed then. */
+static void test_wrong_one_alone_is_struck_out(void **state)
+{
+    static const struct {
+        double shift, evidence;
+        int32_t contrast, stays;
+    } cases[] = {{TILE, 130, 100, 0}, {0, 130, 100, 1}, {TILE, 130, 0, 1}, {TILE, 700, 100, 1}};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_geometry_options options;
+        asj_estimation *e = prepare(context, TILE, &options);
+        show(context, e, 1, &cases[k].contrast);
+        e->finalists[0] = shifted_by(cases[k].shift);
+        e->finalists[0].evidence = cases[k].evidence;
+        e->count = 1;
+        assert_int_equal(asj_strike_out(e), ASJ_OK);
+        print_message("shift %.0f, contrast %d: agreement %.2f\n", cases[k].shift, cases[k].contrast,
+                      asj_agreement_of_first(e, &e->finalists[0]));
+        assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), cases[k].stays ? 0 : -1);
+        release(context, e);
+    }
 }
 
 int main(void)
@@ -214,6 +249,7 @@ int main(void)
         cmocka_unit_test(test_pictures_tell_tiles_from_others),
         cmocka_unit_test(test_pictures_of_like_tiles_say_nothing),
         cmocka_unit_test(test_wrong_one_in_front_is_struck_out),
+        cmocka_unit_test(test_wrong_one_alone_is_struck_out),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

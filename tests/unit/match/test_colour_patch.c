@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* src/match/colour_patch.c: the image at half its size, patches of it against a naive evaluation, and what white balance leaves of
- * them. src/match/wide_shortlist.c: of partners that look the same in grey levels the one of the same colour is the nearest. */
+/* src/match/small_picture.c: the image at half its size. src/match/colour_patch.c: patches of it against a naive evaluation, and
+ * what white balance leaves of them. src/match/wide_shortlist.c: of partners that look the same in grey levels the one of the same
+ * colour is the nearest. */
 #include "match/colour_patch.h"
 #include "match/compare.h"
 #include "match/image_features.h"
@@ -45,6 +46,32 @@ static void small_pictures_are_means(void **state)
                 }
         asj_release_much(&context->memory, made.level);
     }
+}
+
+/* Levels of a pyramid, one by one or means of 2 x 2 or 3 x 3, of each channel; what is left falls away. */
+static void pyramids_have_means_of_them(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    uint8_t levels[3 * 11 * 7];
+    for (int32_t k = 0; k < (int32_t)sizeof levels; k++)
+        levels[k] = (uint8_t)(41 * k + k * k / 3);
+    const asj_small_picture picture = {levels, 11, 7};
+    for (int32_t by = 1; by <= 3; by++)
+        for (int32_t c = 0; c < 3; c++) {
+            asj_pyramid pyramid;
+            const int32_t width = 11 / by, height = 7 / by;
+            assert_int_equal(asj_pyramid_allocate(context, width, height, &pyramid), ASJ_OK);
+            asj_small_picture_fill(context, &picture, c, by, &pyramid);
+            for (int32_t k = 0; k < width * height; k++) {
+                int32_t sum = 0;
+                for (int32_t n = 0; n < by * by; n++)
+                    sum += levels[(c * 7 + k / width * by + n / by) * 11 + k % width * by + n % by];
+                const double mean = (double)sum * ASJ_GRAY_ONE / (by * by);
+                assert_true(fabs(pyramid.plane[0][k / width * (width + 1) + k % width] - mean) <= 0.5);
+            }
+            assert_int_equal(pyramid.plane[0][width], pyramid.plane[0][width - 1]); /* completed */
+            asj_pyramid_free(&context->memory, &pyramid);
+        }
 }
 
 static void some_have_none(void **state)
@@ -348,6 +375,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_pictures_are_means),      cmocka_unit_test(some_have_none),
+        cmocka_unit_test(pyramids_have_means_of_them),
         cmocka_unit_test(patches_are_normalised_levels), cmocka_unit_test(scale_is_that_of_the_frames),
         cmocka_unit_test(white_balance_does_not_count),  cmocka_unit_test(hues_tell_partners_apart),
         cmocka_unit_test(grey_has_no_hue),               cmocka_unit_test(every_allocation_may_fail),

@@ -52,6 +52,9 @@ class Geometry:
     log10_nfa: float
     #: sum of the probabilities of the candidates
     inliers: float
+    #: how well the images agree between the matches, of what they could: about 1 as well as possible, 0.6 where they know nothing (bare
+    #: walls, no plane), 0.3 and less where only corners are alike. None: nobody has looked (model "fundamental")
+    picture_agreement: float | None
     #: of the best other geometry, whose matches are others: with status "ambiguous" either may be right. None: there is none
     rival_log10_nfa: float | None
     #: its motion; None where it has none
@@ -177,6 +180,6 @@ def read(record: Any) -> Geometry | None:
         array(record.rotation, 3, 3) if posed else None, array(record.translation, 3) if posed else None,
         array(record.covariance, 6, 6) if posed else None, array(record.rotation, 3, 3) if turns else None,
         array(record.covariance, 6, 6)[:3, :3] if turns else None, cameras if cameras[0, 0] > 0 else None, record.focal_sd,
-        record.log10_nfa, record.inliers, record.rival_log10_nfa if record.has_rival else None, array(record.rival_rotation, 3, 3) if rival_posed else None,
-        array(record.rival_translation, 3) if rival_posed else None,
+        record.log10_nfa, record.inliers, record.picture_agreement or None, record.rival_log10_nfa if record.has_rival else None,
+        array(record.rival_rotation, 3, 3) if rival_posed else None, array(record.rival_translation, 3) if rival_posed else None,
     )  # fmt: skip

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What speaks against a geometry.
+ *
+ * Its matches give another partner to places that a better one has matched. Where both cannot be right, colours say which one is
+ * wrong where images have some (colour_vote.c), and that may be the one with most evidence: a floor of tiles, turned by 90 degrees
+ * or shifted so that more of it is seen twice, has up to three times the log evidence of the right geometry. So do the pictures
+ * between the matches (picture_vote.c). Either may know too little to decide alone, so what they say is added; where colours speak
+ * for the other side that is taken away from what pictures say, which are wrong more often, and not the other way round. (Rooms 0
+ * to 330 and 1000 to 1711 as they are: 847 of 1035 pairs accepted, with the stronger of the two 823; what is new is right.)
+ *
+ * A rival that turns the room over (upright.c) is contradicted where the best one leaves it upright and has UPRIGHT_AHEAD times its
+ * log evidence. Frames and windows are matched with themselves upside down by two thirds of their corners (.37, .46, .57, .58 and
+ * .71 of the evidence in five pairs of rooms whose best geometry is right); in pairs of unrelated rooms, where neither is right,
+ * by nearly all of them (.74, .80, .84, .92). So the way that is up never overrules what has more evidence: some cameras are
+ * turned. But what turns the room over is never preferred to what leaves it upright, whatever colours and pictures say.
+ *
+ * And pictures disagree with a geometry by themselves where they agree (picture_agreement.c) by less than AGREEMENT, which goes
+ * down where it has MUCH evidence. */
+#include "contradiction.h"
+#include "colour_vote.h"
+#include "likelihood.h"
+#include "picture_agreement.h"
+#include "picture_vote.h"
+#include "upright.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#define CONTRARY_SEEN 0.3 /* where pictures decide: a motion beside the best one (.17, video frames) has its planes elsewhere */
+#define SAME_THING 8.0 /* px */
+#define HELD 3
+#define LEAST_HELD 1e-3
+#define OF_FEW 1.5 /* pictures count so much less beside few matches (131 rooms: without, 2 more accepted, one pose wrong) */
+#define UPRIGHT_AHEAD 1.4
+#define BETTER 4.0 /* what agrees better by 1/BETTER contradicts the other one */
+#define AGREEMENT 0.36
+#define MUCH (-60.0) /* log10 NFA */
+#define VERY_MUCH (-150.0)
+#define AGREEMENT_GOES_DOWN 0.16 /* from one to the other */
+#define LEAST_AGREEMENT 0.1
+#define LEAST_TOLD 0.01 /* 0: nobody has looked */
+
+/* Raises e->elsewhere[k] to how probable it is under the geometry of the probabilities `mine` that the place of candidate k in
+ * image `side` is matched with something else: the mean of all else that it is matched with
+ * lies farther than SAME_THING from the candidate's own point. */
+static void find_elsewhere(const asj_estimation *e, int32_t side, const double *mine)
+{
+    double *const held = e->vote; /* of a place: probability, and the same times x and y of what it is matched with */
+    memset(held, 0, HELD * (size_t)e->set.place_count[side] * sizeof *held);
+    for (int32_t pass = 0; pass < 2; pass++)
+        for (int32_t k = 0; k < e->set.count; k++) {
+            const asj_pair *c = &e->set.list[k];
+            double *at = held + HELD * (ptrdiff_t)(side == 0 ? c->place1 : c->place2);
+            const double x = side == 0 ? c->x2 : c->x1, y = side == 0 ? c->y2 : c->y1;
+            if (pass == 0) {
+                at[0] += mine[k];
+                at[1] += mine[k] * x;
+                at[2] += mine[k] * y;
+            } else if (at[0] - mine[k] > LEAST_HELD) {
+                const double rest = at[0] - mine[k], dx = (at[1] - mine[k] * x) / rest - x, dy = (at[2] - mine[k] * y) / rest - y;
+                if (dx * dx + dy * dy > SAME_THING * SAME_THING)
+                    e->elsewhere[k] = fmax(e->elsewhere[k], rest);
+            }
+        }
+}
+
+/* How much of the second geometry's matches contradicts the first one's: it gives another partner to a place that the first one has
+ * matched, in either image, and that the first one does not hold for nearly as likely. As a part of all of them. A partner within
+ * SAME_THING is no other one: a corner of a frame has the frame's inner corner beside it, and a motion that is a little off takes
+ * the one for the other. (229 pairs of rendered rooms, two seeds: 289 accepted with 0 px, 309 with 8, 315 with 10; of 97 unrelated
+ * pairs, four seeds, none with 10 and 5 of 388 with 12.) */
+static double contradiction(asj_estimation *e, const asj_model *second)
+{
+    const double *mine = e->scratch.probability;
+    double against = 0, all = 0;
+    asj_probabilities(&e->set, &second->view, 1, &e->scratch.score, e->other);
+    for (int32_t k = 0; k < e->set.count; k++) {
+        against += e->other[k] * fmax(0, fmin(1, e->elsewhere[k]) - mine[k]);
+        all += e->other[k];
+    }
+    return all > 0 ? against / all : 0;
+}
+
+/* How much colours and pictures speak against the second of two geometries, with these probabilities: above 1 they contradict it.
+ * first_look: of the first one. contrary: how much of the matches contradicts the other one. Of two that have matched nearly the
+ * same, pictures only tell which has its planes where they are. */
+static double against(const asj_estimation *e, const double *first, const double *second, int32_t first_look, double contrary)
+{
+    const double colours = e->set.has_colours ? asj_colours_against(&e->set, first, second, e->vote) : 0;
+    if (!e->pictures || !(contrary > CONTRARY_SEEN))
+        return colours;
+    const asj_look *of_first = &e->pictures->looks[first_look], *of_second = &e->pictures->looks[1 - first_look];
+    const double seen = asj_pictures_against(of_first, of_second) +
+                        BETTER * fmax(0, e->agreement[first_look] - e->agreement[1 - first_look]);
+    return colours + (asj_inliers(&e->set, e->scratch.probability) < ASJ_FEW_MATCHES ? seen / OF_FEW : seen);
+}
+
+double asj_against_other(const asj_estimation *e, double contrary)
+{
+    return against(e, e->scratch.probability, e->other, 0, contrary);
+}
+
+double asj_against_first(const asj_estimation *e, double contrary)
+{
+    return against(e, e->other, e->scratch.probability, 1, contrary);
+}
+
+/* Look 0 is of the geometry that others are compared with, 1 of the other. */
+static void look_at(asj_estimation *e, const asj_model *m, const double *probability, int32_t look)
+{
+    if (e->pictures) {
+        asj_pictures_look(e->pictures, &e->set, &m->view, probability, &e->pictures->looks[look]);
+        e->agreement[look] = asj_pictures_agreement(&e->pictures->looks[look]);
+    }
+}
+
+void asj_compare_from(asj_estimation *e, int32_t number)
+{
+    asj_probabilities(&e->set, &e->finalists[number].view, 1, &e->scratch.score, e->scratch.probability);
+    memset(e->elsewhere, 0, (size_t)e->set.count * sizeof *e->elsewhere);
+    for (int32_t side = 0; side < 2; side++)
+        find_elsewhere(e, side, e->scratch.probability);
+    look_at(e, &e->finalists[number], e->scratch.probability, 0);
+}
+
+double asj_compare_with(asj_estimation *e, const asj_model *other)
+{
+    const double contrary = contradiction(e, other);
+    if (contrary > CONTRARY_SEEN)
+        look_at(e, other, e->other, 1);
+    return contrary;
+}
+
+int32_t asj_finalist_turns_over(const asj_estimation *e, int32_t number)
+{
+    return asj_turns_over(&e->set, &e->finalists[number], asj_estimation_cameras(e));
+}
+
+static int32_t is_overturned(const asj_estimation *e, int32_t best, int32_t rival)
+{
+    const asj_model *m = &e->finalists[best], *r = &e->finalists[rival];
+    return m->evidence > fmax(0, UPRIGHT_AHEAD * r->evidence) && asj_finalist_turns_over(e, rival) &&
+           !asj_finalist_turns_over(e, best);
+}
+
+int32_t asj_is_contradicted(const asj_estimation *e, int32_t best, int32_t rival, double contrary)
+{
+    return asj_against_other(e, contrary) > 1 || is_overturned(e, best, rival);
+}
+
+int32_t asj_contradicts(asj_estimation *e, const asj_model *other)
+{
+    const double contrary = asj_compare_with(e, other);
+    return asj_against_other(e, contrary) > 1;
+}
+
+/* Does look number `look`, of a geometry of the NFA 10^log10_nfa, disagree? */
+static int32_t disagrees(const asj_estimation *e, int32_t look, double log10_nfa)
+{
+    const double beyond = fmax(0, MUCH - log10_nfa) / (MUCH - VERY_MUCH);
+    return e->agreement[look] < fmax(LEAST_AGREEMENT, AGREEMENT - beyond * AGREEMENT_GOES_DOWN);
+}
+
+int32_t asj_pictures_disagree_with_first(const asj_estimation *e, double log10_nfa)
+{
+    return e->pictures && disagrees(e, 0, log10_nfa);
+}
+
+int32_t asj_pictures_disagree_with_other(asj_estimation *e, const asj_model *other, double log10_nfa)
+{
+    look_at(e, other, e->other, 1);
+    return e->pictures && disagrees(e, 1, log10_nfa);
+}
+
+double asj_agreement_of_first(const asj_estimation *e, const asj_model *first)
+{
+    return e->pictures && first->kind != ASJ_GEOMETRY_FUNDAMENTAL ? fmax(LEAST_TOLD, e->agreement[0]) : 0;
+}

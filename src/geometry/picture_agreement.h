@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_SRC_GEOMETRY_PICTURE_AGREEMENT_H
+#define ASJ_SRC_GEOMETRY_PICTURE_AGREEMENT_H
+
+#include "picture_look.h"
+
+/* How well the pictures agree through a geometry, of what they could: about 1 as well as possible, 0 as well as any two cells of
+ * what it takes for a plane; what nothing is known of has what it is drawn to (picture_agreement.c). */
+double asj_pictures_agreement(const asj_look *look);
+
+#endif

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Two looks at the same images, two estimates of their geometry, and one answer.
+ *
+ * Poses are two witnesses of one motion. Where they contradict each other, the one with which the pictures agree better by
+ * AGREES_BETTER (../geometry/picture_agreement.c) is right; of others evidence decides. How often, of 1083 pairs of rooms seen from
+ * far apart (wide_rooms, seeds 0 to 343, 360 to 704 and 1000 to 1399; before pictures were asked):
+ *   - Both accepted and at odds: one is wrong. If the upsampled images have OUTWEIGHS times the log evidence it is that of the
+ *     images (3 pairs); if one of the two is upside down it is that, unless it has so much more (one pair: the upsampled images',
+ *     with 1.6 times). Otherwise nothing says which, which is an ambiguous answer, with the matches that neither contradicts. Two
+ *     of a plane: the plane is the answer, and its pose is open.
+ *   - Both accepted, and they agree as far as they know: the surer one is the answer, where the upsampled images' matches hold
+ *     (upsampled.c); otherwise that of the images is, surer or not.
+ *   - The images have rivals or leave the motion open, and what the upsampled ones accept is the images' best, or that one's rival:
+ *     that is the answer, whether or not matches come again, since what repeats has been matched by the period, and if there are
+ *     none: chance does not bring one motion to within SAME_POSE twice. (Rooms 1000 to 1399: two more poses by the rival, one
+ *     without a match, all within .4 degrees; of 188 unrelated pairs none.)
+ *   - The images have rivals or leave the motion open, and the upsampled ones accept another motion with SURPASSES times the log
+ *     evidence of the images' best, and SURELY: that is the answer, whether or not matches come again. Where both accept one
+ *     motion the upsampled images have 2.06 times as much (median of 772 pairs; 1.27 and more in 98 of 100); where the images' best
+ *     is wrong they have more than that, too, and none of its matches comes again. (20 pairs whose matches do not: 13 have so
+ *     much, all within 1 degree, and of the others two are out, by 19 and 90 degrees. It accepts one more of 396 unrelated pairs,
+ *     without SURELY three.) Where the images have no match at all another motion is believed only then.
+ *   - The images have rivals, and the upsampled ones accept another motion with less: when matches come again.
+ *   - The images leave the motion open, and that of the upsampled ones is one that they allow: when matches come again, the
+ *     upsampled images know better. (Cameras near each other: their own poses are known to 30 degrees and more, the upsampled
+ *     images' to one.) One that they do not allow is no answer.
+ *   - The images have rivals or leave the motion open, and that of the upsampled ones is upside down: nothing is settled. Frames
+ *     and windows match themselves so, in either look (one pair, with four seeds of six).
+ *   - The images have a rival that is ASJ_SURE_RIVAL: only OUTNUMBERS times the log evidence settles that. What repeats so much
+ *     does so in the upsampled images, too, whose rivals the matcher may have lost: it makes neighbours agree on one period. (Two
+ *     pairs with 1.6 and 1.7 times, one out by 42 degrees; facades: where the upsampled images are wrong, up to 1.5 times, and 2.3
+ *     and more where stains tell the windows from each other.)
+ *   - The images say that the camera only turns: no motion of the upsampled ones undoes that. Of thousands of matches the errors
+ *     that they have in common look like a small step. (A rendered pair turned by 15 degrees: the rotation has 39 nats more than
+ *     any motion in the images, 22 fewer in the upsampled ones.)
+ *   - The images' is accepted, and the upsampled ones have rivals: the images' is the answer (34 pairs, all within 3.4 degrees).
+ *
+ * A third witness are the images' colours (asj_looks_close()), where there is no motion yet, or none that is SURELY one, and no
+ * rival that is ASJ_SURE_RIVAL. What they accept is the answer where the images have chance or too little; where it has
+ * SURPASSES times the log evidence and SURELY (rooms 1000 to 1711: of 53 accepted with a log10 NFA above -30 13, all of which
+ * are right then, and one was out by 90 degrees before); and where it is one of the images' rivals, or a motion that the images
+ * allow. Nothing that is upside down. */
+#include "looks.h"
+#include "core/angle.h"
+#include "geometry/ambiguity.h"
+#include "geometry/geometry_options.h"
+#include "geometry/small_matrix.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of the rotation, and of the direction of the translation: */
+#define SAME_POSE (4 * ASJ_DEGREE)   /* where one of the two is not accepted and does not say how sure it is */
+#define LEAST_APART (3 * ASJ_DEGREE) /* of two that do, no less is at odds, */
+#define SURELY_APART 6.5             /* and no less than so many standard deviations (of others up to 5.9) */
+#define HALF_TURN 1e-6               /* 2 sin of an angle that is 180 degrees */
+
+/* Evidence of the upsampled images: */
+#define SURPASSES 1.25 /* times that of the images, */
+#define SURELY (-35)   /* log10 NFA; */
+#define OUTNUMBERS 2.0 /* times that, where the images repeat themselves; */
+#define OUTWEIGHS 2.5  /* times that of an accepted motion */
+
+/* Agreement of the pictures: */
+#define AGREES_BETTER 0.15
+#define ENOUGH 0.5
+
+/* How far two poses are apart: rad, and with their covariances in standard deviations along that way. */
+typedef struct distance {
+    double rotation, translation, deviations;
+} distance;
+
+/* v / sd of the sum of both in its direction. Nothing is uncertain along a translation itself, which is of length 1: opposite ones
+ * are sure to differ, whatever rounding leaves of the variance. */
+static double in_deviations(const double v[3], const asj_geometry *a, const asj_geometry *b, int32_t first)
+{
+    double variance = 0;
+    for (int32_t i = 0; i < 3; i++)
+        for (int32_t k = 0; k < 3; k++) {
+            const int32_t at = 6 * (first + i) + first + k;
+            variance += v[i] * v[k] * (a->covariance[at] + b->covariance[at]);
+        }
+    const double square = asj_dot3(v, v);
+    return variance > 0 ? square / sqrt(variance) : square > 0 ? HUGE_VAL : 0;
+}
+
+/* Its axis, of any length. sin(angle) axis is what is antisymmetric of a turn, which vanishes at 180 degrees; what is symmetric is
+ * 2 axis axis' - I there. */
+static void find_axis(const double turn[9], double axis[3])
+{
+    int32_t most = 0;
+    axis[0] = turn[7] - turn[5];
+    axis[1] = turn[2] - turn[6];
+    axis[2] = turn[3] - turn[1];
+    if (asj_dot3(axis, axis) > HALF_TURN * HALF_TURN || turn[0] + turn[4] + turn[8] > 0)
+        return;
+    for (int32_t k = 1; k < 3; k++)
+        most = turn[4 * k] > turn[4 * most] ? k : most;
+    for (int32_t k = 0; k < 3; k++)
+        axis[k] = turn[3 * most + k] + (k == most);
+}
+
+static distance measure(const asj_geometry *a, const asj_geometry *b)
+{
+    double turn[9], along[3], axis[3];
+    asj_multiply3_transposed(a->rotation, b->rotation, turn);
+    find_axis(turn, axis);
+    const double length = sqrt(asj_dot3(axis, axis));
+    distance d = {asj_rotation_angle(turn), 0, 0};
+    double vector[3];
+    for (int32_t k = 0; k < 3; k++) {
+        along[k] = a->translation[k] - b->translation[k];
+        vector[k] = length > 0 ? d.rotation * axis[k] / length : 0;
+    }
+    d.translation = 2 * asin(fmin(1, 0.5 * sqrt(asj_dot3(along, along))));
+    d.deviations = fmax(in_deviations(vector, a, b, 0), in_deviations(along, a, b, 3));
+    return d;
+}
+
+static int32_t have_same_pose(const asj_geometry *a, const asj_geometry *b)
+{
+    const distance d = measure(a, b);
+    return fmax(d.rotation, d.translation) <= SAME_POSE;
+}
+
+/* Is the pose that of the rival? */
+static int32_t is_rival_of(const asj_geometry *g, const asj_geometry *pose)
+{
+    asj_geometry rival = *g;
+    memcpy(rival.rotation, g->rival_rotation, sizeof rival.rotation);
+    memcpy(rival.translation, g->rival_translation, sizeof rival.translation);
+    return g->has_rival && asj_dot3(g->rival_translation, g->rival_translation) > 0 && have_same_pose(&rival, pose);
+}
+
+static int32_t are_at_odds(const asj_geometry *a, const asj_geometry *b)
+{
+    const distance d = measure(a, b);
+    return fmax(d.rotation, d.translation) > LEAST_APART && d.deviations > SURELY_APART;
+}
+
+/* Sum of the variances of rotation and translation. */
+static double uncertainty(const asj_geometry *g)
+{
+    double sum = 0;
+    for (int32_t k = 0; k < 6; k++)
+        sum += g->covariance[7 * k];
+    return sum;
+}
+
+/* A motion that the images leave open says how far; without a focal length, nothing. */
+static int32_t contradicts(const asj_geometry *open, const asj_geometry *upsampled)
+{
+    return uncertainty(open) > 0 && are_at_odds(open, upsampled);
+}
+
+/* Do the pictures agree with `a` so much better that it is right where the two contradict each other? */
+static int32_t agrees_better(const asj_geometry *a, const asj_geometry *b)
+{
+    return a->picture_agreement > 0 && b->picture_agreement > 0 && a->picture_agreement - b->picture_agreement > AGREES_BETTER;
+}
+
+/* Has a motion of the upsampled images so much more evidence than the best one of the images, which has rivals or is open? */
+static int32_t surpasses(const asj_geometry *upsampled, const asj_geometry *own)
+{
+    return (upsampled->log10_nfa < fmin(SURELY, SURPASSES * own->log10_nfa) && !agrees_better(own, upsampled)) ||
+           agrees_better(upsampled, own);
+}
+
+static int32_t tells_motion(const asj_geometry *g)
+{
+    return g->has_pose || g->only_turns;
+}
+
+/* What is up in image 1 is down in image 2. */
+static int32_t is_upside_down(const asj_geometry *g)
+{
+    return tells_motion(g) && g->rotation[4] < 0;
+}
+
+/* Have the images a rival that is no chance by itself? */
+static int32_t repeats(const asj_geometry *own)
+{
+    return own->status == ASJ_GEOMETRY_AMBIGUOUS && own->has_rival && own->rival_log10_nfa < ASJ_SURE_RIVAL;
+}
+
+int32_t asj_looks_is_answer(const asj_geometry *g)
+{
+    return g->status == ASJ_GEOMETRY_ACCEPTED || asj_geometry_is_open(g);
+}
+
+/* Of two accepted poses that are at odds. */
+static asj_looks decide(const asj_geometry *own, const asj_geometry *upsampled)
+{
+    if (!own->only_turns && own->model == ASJ_GEOMETRY_HOMOGRAPHY && upsampled->model == ASJ_GEOMETRY_HOMOGRAPHY)
+        return ASJ_LOOKS_PLANE;
+    if (agrees_better(upsampled, own))
+        return ASJ_LOOKS_SETTLED;
+    if (agrees_better(own, upsampled))
+        return ASJ_LOOKS_BY_IMAGES;
+    if (upsampled->log10_nfa < OUTWEIGHS * own->log10_nfa)
+        return ASJ_LOOKS_SETTLED;
+    if (is_upside_down(upsampled) && !is_upside_down(own))
+        return ASJ_LOOKS_BY_IMAGES;
+    return is_upside_down(own) && !is_upside_down(upsampled) && own->log10_nfa > OUTWEIGHS * upsampled->log10_nfa
+               ? ASJ_LOOKS_SETTLED : ASJ_LOOKS_DISPUTED;
+}
+
+/* Of two accepted poses, or turns of a camera. */
+static asj_looks compare(const asj_geometry *own, const asj_geometry *upsampled)
+{
+    if (are_at_odds(own, upsampled))
+        return decide(own, upsampled);
+    return uncertainty(upsampled) <= uncertainty(own) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
+}
+
+int32_t asj_looks_may_settle(const asj_match_result *own)
+{
+    return asj_geometry_is_open(&own->geometry) && own->geometry.model == ASJ_GEOMETRY_ESSENTIAL;
+}
+
+/* Of images that have rivals or leave the motion open, whichever of their motions that is. */
+static int32_t settles(const asj_geometry *upsampled, const asj_geometry *own)
+{
+    return upsampled->status == ASJ_GEOMETRY_ACCEPTED && upsampled->has_pose &&
+           (have_same_pose(own, upsampled) || is_rival_of(own, upsampled) || surpasses(upsampled, own));
+}
+
+/* Of images that have rivals or leave the motion open. */
+static asj_looks look_beyond(const asj_match_result *own, const asj_geometry *upsampled)
+{
+    const asj_geometry *a = &own->geometry;
+    const int32_t settled = settles(upsampled, a);
+    if (own->match_count == 0 && !settled)
+        return ASJ_LOOKS_LOST;
+    if (upsampled->status != ASJ_GEOMETRY_ACCEPTED)
+        return ASJ_LOOKS_BY_UPSAMPLED;
+    if (is_upside_down(upsampled) || !upsampled->has_pose || a->only_turns)
+        return ASJ_LOOKS_LOST;
+    if (settled)
+        return ASJ_LOOKS_SETTLED;
+    return a->status == ASJ_GEOMETRY_DEGENERATE && contradicts(a, upsampled) ? ASJ_LOOKS_LOST : ASJ_LOOKS_BY_UPSAMPLED;
+}
+
+asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled)
+{
+    const asj_geometry *a = &own->geometry, *b = &upsampled->geometry;
+    const int32_t accepted = b->status == ASJ_GEOMETRY_ACCEPTED;
+    const int32_t alike = (a->has_pose && b->has_pose) || (a->only_turns && b->only_turns);
+    if (a->status == ASJ_GEOMETRY_ACCEPTED)
+        return accepted && alike ? compare(a, b) :
+               accepted && !tells_motion(a) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
+    if (repeats(a) && !(accepted && (b->log10_nfa < OUTNUMBERS * a->log10_nfa || agrees_better(b, a))))
+        return ASJ_LOOKS_LOST;
+    return asj_looks_may_settle(own) ? look_beyond(own, b) : ASJ_LOOKS_BY_UPSAMPLED;
+}
+
+static int32_t agrees_enough(const asj_geometry *g)
+{
+    return !(g->picture_agreement > 0) || g->picture_agreement > ENOUGH;
+}
+
+/* A geometry that needs no other. Without cameras, and where the model is a plane, there is no motion to ask for. */
+static int32_t is_enough(const asj_geometry *g)
+{
+    return g->status == ASJ_GEOMETRY_ACCEPTED &&
+           (tells_motion(g) ? g->log10_nfa < SURELY && agrees_enough(g) : g->model != ASJ_GEOMETRY_ESSENTIAL);
+}
+
+int32_t asj_looks_may_close(const asj_match_result *own)
+{
+    const asj_geometry *g = &own->geometry;
+    if (g->status == ASJ_GEOMETRY_AMBIGUOUS)
+        return asj_looks_may_settle(own) && !repeats(g);
+    return g->status != ASJ_GEOMETRY_NOT_ASKED && !is_enough(g);
+}
+
+int32_t asj_looks_close(const asj_match_result *own, const asj_match_result *other)
+{
+    const asj_geometry *a = &own->geometry, *b = &other->geometry;
+    if (!asj_looks_may_close(own) || b->status != ASJ_GEOMETRY_ACCEPTED)
+        return 0;
+    if (a->status == ASJ_GEOMETRY_CHANCE || a->status == ASJ_GEOMETRY_TOO_FEW)
+        return 1;
+    if (!b->has_pose || is_upside_down(b) || a->only_turns)
+        return 0;
+    if (a->status == ASJ_GEOMETRY_AMBIGUOUS)
+        return settles(b, a);
+    return surpasses(b, a) || (!tells_motion(a) && !contradicts(a, b));
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* src/match/looks.c: of two poses that contradict each other the one with which the pictures agree better is the answer, whatever
+ * evidence says; where they agree alike, or nobody has looked, evidence decides as it does without. (What evidence decides:
+ * test_upsampled_geometry.c.) */
+#include "unit_test.h"
+
+#include "match/looks.h"
+
+#include <asj/asj.h>
+
+/* A motion along x, turned by `degrees` about y, known to .3 degrees. */
+static void make(asj_match_result *r, int32_t status, double log10_nfa, double degrees, double agreement)
+{
+    asj_geometry *g = &r->geometry;
+    const double angle = degrees * 3.14159265358979323846 / 180, sd = 0.005;
+    memset(r, 0, sizeof *r);
+    r->match_count = 20;
+    g->status = status;
+    g->model = ASJ_GEOMETRY_ESSENTIAL;
+    g->has_pose = 1;
+    g->log10_nfa = log10_nfa;
+    g->picture_agreement = agreement;
+    g->rotation[0] = g->rotation[8] = cos(angle);
+    g->rotation[2] = sin(angle);
+    g->rotation[6] = -sin(angle);
+    g->rotation[4] = g->translation[0] = 1;
+    for (int k = 0; k < 6; k++)
+        g->covariance[7 * k] = sd * sd;
+}
+
+static void pictures_decide_between_poses(void **state)
+{
+    static const struct {
+        double own, upsampled, own_nfa, upsampled_nfa;
+        asj_looks looks;
+    } cases[] = {{.8, .5, -40, -90, ASJ_LOOKS_BY_IMAGES},  {.5, .8, -90, -40, ASJ_LOOKS_SETTLED},
+                 {.8, .7, -40, -90, ASJ_LOOKS_DISPUTED},   {.7, .8, -90, -40, ASJ_LOOKS_DISPUTED},
+                 {.8, .5, -30, -90, ASJ_LOOKS_BY_IMAGES},  {.8, .7, -30, -90, ASJ_LOOKS_SETTLED},
+                 {.8, 0, -30, -90, ASJ_LOOKS_SETTLED},     {0, .8, -40, -90, ASJ_LOOKS_DISPUTED}};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result own, upsampled;
+        make(&own, ASJ_GEOMETRY_ACCEPTED, cases[k].own_nfa, 20, cases[k].own);
+        make(&upsampled, ASJ_GEOMETRY_ACCEPTED, cases[k].upsampled_nfa, 0, cases[k].upsampled);
+        assert_int_equal(asj_looks_of(&own, &upsampled), cases[k].looks);
+        make(&own, ASJ_GEOMETRY_ACCEPTED, cases[k].own_nfa, .1, cases[k].own); /* no contradiction */
+        const asj_looks same = asj_looks_of(&own, &upsampled);
+        assert_true(same == ASJ_LOOKS_BY_UPSAMPLED || same == ASJ_LOOKS_BY_IMAGES);
+    }
+}
+
+/* Rivals of the images, which the upsampled ones or colours settle. */
+static void pictures_settle_what_is_ambiguous(void **state)
+{
+    static const struct {
+        double own, other, own_nfa, other_nfa, rival_nfa;
+        int32_t settled;
+    } cases[] = {{.5, .8, -40, -20, -38, 1},    {.7, .8, -40, -20, -38, 0}, {.8, .5, -40, -60, -38, 0}, {.8, .7, -40, -60, -38, 1},
+                 {0, .8, -40, -20, -38, 0},     {.5, 0, -40, -60, -38, 1},  {.5, .8, -140, -20, -130, 1},
+                 {.7, .8, -140, -250, -130, 0}};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result own, other;
+        make(&own, ASJ_GEOMETRY_AMBIGUOUS, cases[k].own_nfa, 20, cases[k].own);
+        own.geometry.has_rival = 1;
+        own.geometry.rival_log10_nfa = cases[k].rival_nfa;
+        make(&other, ASJ_GEOMETRY_ACCEPTED, cases[k].other_nfa, 0, cases[k].other);
+        const asj_looks looks = asj_looks_of(&own, &other);
+        assert_int_equal(looks == ASJ_LOOKS_SETTLED, cases[k].settled);
+        const int32_t repeats = cases[k].rival_nfa < -100; /* then colours are not asked */
+        assert_int_equal(asj_looks_close(&own, &other), cases[k].settled && !repeats);
+        assert_int_equal(asj_looks_may_close(&own), !repeats);
+    }
+}
+
+/* What is surely accepted is looked at once more where the pictures hardly agree with it, and so much is not believed then. */
+static void little_agreement_is_looked_at_again(void **state)
+{
+    static const struct {
+        double own, other, own_nfa;
+        int32_t may_close, closes;
+    } cases[] = {{.8, .9, -60, 0, 0}, {.45, .9, -60, 1, 1}, {.45, .55, -60, 1, 0}, {0, .9, -60, 0, 0}, {.8, .9, -20, 1, 0},
+                 {.7, .9, -20, 1, 1}};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result own, other;
+        make(&own, ASJ_GEOMETRY_ACCEPTED, cases[k].own_nfa, 20, cases[k].own);
+        make(&other, ASJ_GEOMETRY_ACCEPTED, -22, 0, cases[k].other);
+        assert_int_equal(asj_looks_may_close(&own), cases[k].may_close);
+        assert_int_equal(asj_looks_close(&own, &other), cases[k].closes);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_decide_between_poses),
+        cmocka_unit_test(pictures_settle_what_is_ambiguous),
+        cmocka_unit_test(little_agreement_is_looked_at_again),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
