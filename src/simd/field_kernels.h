@@ -16,15 +16,24 @@ typedef char tiles_are_whole_groups[ASJ_FIELD_TILE % GROUP_PIXELS == 0 ? 1 : -1]
 /* The strongest peaks of each pixel. */
 static void rank_by_strength(const asj_field *field, const int16_t *z, ranking *ranked)
 {
-    const int32_t count = field->sectors.count, together = field->suppress + 1;
-    peak_walk walk = start_peaks(z, V_LANES, field->suppress);
+    const int32_t count = field->sectors.count, reach = field->suppress;
+    int32_t k = 0;
     start_ranking(ranked, ASJ_FIELD_BRANCHES, v_zero());
-    for (int32_t k = 0; k < count;) {
-        vec strength = v_zero(), sector = v_zero(), here;
-        for (const int32_t end = count - k < together ? count : k + together; k < end; k++) {
-            const vec below = v_set1_32(field->limits[k][2]);
-            const vec is_peak = next_peak(&walk, z + k * V_LANES, V_LANES, field->suppress, below, &here);
-            strength = v_or(strength, v_and(is_peak, here));
+    if (reach == 2)
+        for (peak_walk walk = start_peaks(z, V_LANES); k + 3 <= count; k += 3) {
+            const int32_t(*limits)[4] = field->limits + k;
+            const vec below[3] = {v_set1_32(limits[0][2]), v_set1_32(limits[1][2]), v_set1_32(limits[2][2])};
+            vec is_peak[3], found;
+            const vec strength = next_peaks(&walk, z + k * V_LANES, V_LANES, below, is_peak);
+            const vec sector = peak_of_three(k, is_peak, &found);
+            insert_peaks(ranked, ASJ_FIELD_BRANCHES, v_and(found, strength), sector);
+        }
+    while (k < count) {
+        vec strength = v_zero(), sector = v_zero();
+        for (const int32_t end = count - k <= reach ? count : k + reach + 1; k < end; k++) {
+            const int16_t *here = z + k * V_LANES;
+            const vec is_peak = peak(here, V_LANES, reach, v_set1_32(field->limits[k][2]));
+            strength = v_or(strength, v_and(is_peak, v_load(here)));
             sector = v_or(sector, v_and(is_peak, v_set1((int16_t)k)));
         }
         insert_peaks(ranked, ASJ_FIELD_BRANCHES, strength, sector);
@@ -138,8 +147,26 @@ static void fill_slots(const tile *t, int32_t x)
     }
 }
 
-/* Strengths of a group from its slots; above[v]: where any reaches the least of a candidate's branch. */
-static void fill_strengths(const tile *t, vec above[GROUP])
+/* Sectors of each pixel as bits: word i of a lane holds WORD of them from sector i WORD on, the first one highest. Such a word is
+ * positive. */
+#define WORD 15
+#define WORDS ((ASJ_FIELD_MAX_SECTORS + WORD - 1) / WORD)
+typedef vec sector_words[WORDS];
+
+/* Sectors up to the end of the word that begins with sector k. */
+static inline int32_t word_end(int32_t k, int32_t count)
+{
+    return k + WORD < count ? k + WORD : count;
+}
+
+/* One more bit, where `sector` is -1. */
+static inline vec put_in(vec bits, vec sector)
+{
+    return v_sub(v_add(bits, bits), sector);
+}
+
+/* Strengths of a group from its slots; strong[v]: which reach the least of a candidate's branch, of vector v. */
+static void fill_strengths(const tile *t, sector_words strong[GROUP])
 {
     const asj_sectors *s = &t->field->sectors;
     const asj_sector_plan *plan = &t->field->plan;
@@ -147,21 +174,23 @@ static void fill_strengths(const tile *t, vec above[GROUP])
     const uint16_t *const slots = t->slots;
     const int32_t count = s->count, *limits = t->field->limits[0];
     int16_t *z = t->z + t->field->suppress * GROUP_PIXELS;
-    vec any[GROUP];
-    for (int v = 0; v < GROUP; v++)
-        any[v] = v_zero();
-    for (int32_t k = 0; k < count; k++, z += GROUP_PIXELS, limits += 4) {
-        const uint16_t *low = slots + (ptrdiff_t)first[k] * GROUP_PIXELS, *high = slots + (ptrdiff_t)last[k] * GROUP_PIXELS;
-        const vec mean = v_set1_32(limits[0]), scale = v_set1_32(limits[1]), least = v_set1_32(limits[3]);
-        for (int v = 0; v < GROUP; v++) {
-            const vec sum = v_sub(v_load(high + v * V_LANES), v_load(low + v * V_LANES));
-            const vec strength = v_high_unsigned(v_sub_saturated(sum, mean), scale);
-            any[v] = v_or(any[v], v_greater(strength, least));
-            v_store(z + v * V_LANES, strength);
+    for (int32_t word = 0, k = 0; k < count; word++) {
+        vec bits[GROUP];
+        for (int v = 0; v < GROUP; v++)
+            bits[v] = v_zero();
+        for (const int32_t end = word_end(k, count); k < end; k++, z += GROUP_PIXELS, limits += 4) {
+            const uint16_t *low = slots + (ptrdiff_t)first[k] * GROUP_PIXELS, *high = slots + (ptrdiff_t)last[k] * GROUP_PIXELS;
+            const vec mean = v_set1_32(limits[0]), scale = v_set1_32(limits[1]), least = v_set1_32(limits[3]);
+            for (int v = 0; v < GROUP; v++) {
+                const vec sum = v_sub(v_load(high + v * V_LANES), v_load(low + v * V_LANES));
+                const vec strength = v_high_unsigned(v_sub_saturated(sum, mean), scale);
+                bits[v] = put_in(bits[v], v_greater(strength, least));
+                v_store(z + v * V_LANES, strength);
+            }
         }
+        for (int v = 0; v < GROUP; v++)
+            strong[v][word] = bits[v];
     }
-    for (int v = 0; v < GROUP; v++)
-        above[v] = any[v];
 }
 
 /* Bit k of the result is bit k + by of `count` sectors. */
@@ -183,35 +212,58 @@ static inline int has_pair(uint64_t sectors, int32_t count, int32_t apart)
     return (sectors & turn(from, count, apart)) != 0;
 }
 
-/* Candidates among the pixels of vector v: the peaks of each pixel as bits in four words, then its pairs. */
-static uint32_t find_candidates(const tile *t, int v)
+/* The sectors of a word that are peaks, from sector k on. */
+static inline vec find_peaks(const tile *t, const int16_t *here, int32_t k, int32_t end, peak_walk *walk)
+{
+    const int32_t reach = t->field->suppress;
+    vec bits = v_zero();
+    for (vec is_peak[3]; reach == 2 && k + 3 <= end; k += 3, here += 3 * GROUP_PIXELS) {
+        next_peaks(walk, here, GROUP_PIXELS, NULL, is_peak);
+        bits = put_in(put_in(put_in(bits, is_peak[0]), is_peak[1]), is_peak[2]);
+    }
+    for (; k < end; k++, here += GROUP_PIXELS)
+        bits = put_in(bits, peak(here, GROUP_PIXELS, reach, v_zero()));
+    return bits;
+}
+
+/* Candidates among the pixels of vector v, some of whose sectors are strong: the peaks among these as bits, then their pairs. */
+static uint32_t find_candidates(const tile *t, int v, const sector_words strong)
 {
     const asj_field *field = t->field;
     const int32_t count = field->sectors.count;
     const int16_t *here = t->z + field->suppress * GROUP_PIXELS + v * V_LANES;
-    uint16_t words[4][V_LANES];
-    peak_walk walk = start_peaks(here, GROUP_PIXELS, field->suppress);
-    vec seen = v_zero(), twice = seen, ignored;
-    for (int32_t word = 0, k = 0; word < 4; word++) {
-        vec bits = v_zero(), bit = v_set1(1);
-        for (const int32_t end = k + 16 < count ? k + 16 : count; k < end; k++, here += GROUP_PIXELS) {
-            const vec below = v_set1_32(field->limits[k][3]);
-            const vec is_peak = next_peak(&walk, here, GROUP_PIXELS, field->suppress, below, &ignored);
-            twice = v_or(twice, v_and(seen, is_peak));
-            seen = v_or(seen, is_peak);
-            bits = v_or(bits, v_and(is_peak, bit));
-            bit = v_add(bit, bit);
-        }
+    const vec zero = v_zero(), minus_one = v_set1(-1);
+    uint16_t words[WORDS][V_LANES];
+    peak_walk walk = {{zero, zero, zero}, {zero, zero}};
+    vec seen = zero, twice = zero;
+    if (field->suppress == 2)
+        walk = start_peaks(here, GROUP_PIXELS);
+    for (int32_t word = 0, k = 0; k < count; word++, k += WORD) {
+        const vec peaks = find_peaks(t, here + (ptrdiff_t)k * GROUP_PIXELS, k, word_end(k, count), &walk);
+        const vec bits = v_and(peaks, strong[word]), any = v_greater(bits, zero);
+        const vec more = v_and(bits, v_add(bits, minus_one)); /* without the lowest bit */
+        twice = v_or(twice, v_or(v_and(seen, any), v_greater(more, zero)));
+        seen = v_or(seen, any);
         v_store(words[word], bits);
     }
     uint32_t found = 0;
     for (uint32_t lanes = v_bits(twice); lanes; lanes &= lanes - 1) {
         const int i = __builtin_ctz(lanes);
-        const uint64_t sectors = words[0][i] | (uint32_t)words[1][i] << 16 | (uint64_t)words[2][i] << 32 |
-                                 (uint64_t)words[3][i] << 48;
+        uint64_t sectors = 0; /* from the last one to the first one: pairs are the same */
+        for (int32_t word = 0, k = 0; k < count; word++, k += WORD)
+            sectors = sectors << (word_end(k, count) - k) | words[word][i];
         found |= (uint32_t)has_pair(sectors, count, field->apart) << i;
     }
     return found;
+}
+
+/* Whether any sector of any pixel is in these words. */
+static inline int has_any(const sector_words words, int32_t count)
+{
+    vec any = words[0];
+    for (int32_t word = 1; word * WORD < count; word++)
+        any = v_or(any, words[word]);
+    return v_any(v_greater(any, v_zero()));
 }
 
 /* Eight bits in even places. */
@@ -229,12 +281,12 @@ static void tile_row(const tile *t, int32_t runs, uint16_t *masks)
     for (int32_t first = 0; first < runs; first += per_group) {
         const int32_t last = runs - first < per_group ? runs : first + per_group;
         uint16_t found[GROUP_PIXELS / 8] = {0};
-        vec above[GROUP];
+        sector_words strong[GROUP];
         fill_slots(t, first * per_run);
-        fill_strengths(t, above);
+        fill_strengths(t, strong);
         repeat_ends(t->z, t->field->sectors.count, t->field->suppress, GROUP_PIXELS);
         for (int v = 0; v < GROUP; v++) {
-            const uint32_t bits = v_any(above[v]) ? find_candidates(t, v) : 0;
+            const uint32_t bits = has_any(strong[v], t->field->sectors.count) ? find_candidates(t, v, strong[v]) : 0;
             for (int part = 0; part < V_LANES; part += 8) {
                 const int pixel = v * V_LANES + part;
                 const uint32_t eight = bits >> part & 255;

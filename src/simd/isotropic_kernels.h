@@ -10,21 +10,37 @@
 #include "detect/isotropic.h"
 #include "strength_kernels.h"
 
+/* The sum of sector k where `is_peak`, else 0. */
+static inline vec sum_of_peak(const asj_sector_plan *plan, const uint16_t *slots, int32_t k, vec is_peak)
+{
+    return v_and(is_peak, v_sub(v_load(slots + plan->high[k] * V_LANES), v_load(slots + plan->low[k] * V_LANES)));
+}
+
 /* The strongest peaks of each candidate by sum. Sums start at -2^15, so that they compare as signed numbers; one of 0 is none. */
 static void rank_by_sum(const asj_isotropic_radius *entry, int32_t most, const uint16_t *slots, const int16_t *z, ranking *ranked)
 {
     const asj_sector_plan *plan = &entry->plan;
-    const int32_t count = entry->sectors.count, together = entry->suppress + 1;
+    const int32_t count = entry->sectors.count, reach = entry->suppress;
+    const uint16_t *const least = entry->least;
     const vec none = v_set1(INT16_MIN);
-    peak_walk walk = start_peaks(z, V_LANES, entry->suppress);
+    int32_t k = 0;
     start_ranking(ranked, most, none);
-    for (int32_t k = 0; k < count;) {
-        vec sum = v_zero(), sector = v_zero(), ignored;
-        for (const int32_t end = count - k < together ? count : k + together; k < end; k++) {
-            const vec below = v_set1((int16_t)(entry->least[k] - 1));
-            const vec is_peak = next_peak(&walk, z + k * V_LANES, V_LANES, entry->suppress, below, &ignored);
-            const vec high = v_load(slots + plan->high[k] * V_LANES), low = v_load(slots + plan->low[k] * V_LANES);
-            sum = v_or(sum, v_and(is_peak, v_sub(high, low)));
+    if (reach == 2)
+        for (peak_walk walk = start_peaks(z, V_LANES); k + 3 <= count; k += 3) {
+            vec below[3], is_peak[3], found, sum = v_zero();
+            for (int i = 0; i < 3; i++)
+                below[i] = v_set1((int16_t)(least[k + i] - 1));
+            next_peaks(&walk, z + k * V_LANES, V_LANES, below, is_peak);
+            for (int i = 0; i < 3; i++)
+                sum = v_or(sum, sum_of_peak(plan, slots, k + i, is_peak[i]));
+            const vec sector = peak_of_three(k, is_peak, &found);
+            insert_peaks(ranked, most, v_add(sum, none), sector);
+        }
+    while (k < count) {
+        vec sum = v_zero(), sector = v_zero();
+        for (const int32_t end = count - k <= reach ? count : k + reach + 1; k < end; k++) {
+            const vec is_peak = peak(z + k * V_LANES, V_LANES, reach, v_set1((int16_t)(least[k] - 1)));
+            sum = v_or(sum, sum_of_peak(plan, slots, k, is_peak));
             sector = v_or(sector, v_and(is_peak, v_set1((int16_t)k)));
         }
         insert_peaks(ranked, most, v_add(sum, none), sector);

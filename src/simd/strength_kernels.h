@@ -29,30 +29,36 @@ static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, vec be
     return v_greater_but(z, before, after, z);
 }
 
-/* The same from one sector to the next, for the reach of 2 that all radii have with the default sector width: what neighbours
- * share stays in registers. */
+/* The same for three sectors in a row, of which one is a peak at most, for the reach of 2 that all radii have with the default
+ * sector width: what neighbours share stays in registers. The next one is sector k. */
 typedef struct peak_walk {
-    vec last, before, here, next; /* strengths of sector k - 1, the larger of k - 2 and k - 1, of k, of k + 1 */
+    vec larger[3]; /* of the strengths of sectors k - 2 and k - 1, k - 1 and k, k and k + 1 */
+    vec here[2];   /* of sectors k and k + 1 */
 } peak_walk;
 
-static inline peak_walk start_peaks(const int16_t *here, ptrdiff_t row, int32_t reach)
+static inline peak_walk start_peaks(const int16_t *here, ptrdiff_t row)
 {
-    const vec last = v_load(here - (reach == 2 ? row : 0)), far = v_load(here - (reach == 2 ? 2 * row : 0));
-    return (peak_walk){last, v_max(last, far), v_load(here), v_load(here + row)};
+    const vec last = v_load(here - row), first = v_load(here), second = v_load(here + row);
+    return (peak_walk){{v_max(v_load(here - 2 * row), last), v_max(last, first), v_max(first, second)}, {first, second}};
 }
 
-/* peak() of the sector at `here`, and its strength; w goes on to the next one. */
-static inline vec next_peak(peak_walk *w, const int16_t *here, ptrdiff_t row, int32_t reach, vec below, vec *strength)
+/* Of sectors k .. k + 2, the first one at `here`: whether each is a peak above below[i], or above nothing where that is NULL;
+ * returns the largest of their strengths. w goes on to the next one. */
+static inline vec next_peaks(peak_walk *w, const int16_t *here, ptrdiff_t row, const vec *below, vec is_peak[3])
 {
-    *strength = w->here;
-    if (reach != 2) {
-        w->here = v_load(here + row);
-        return peak(here, row, reach, below);
-    }
-    const vec far = v_load(here + 2 * row);
-    const vec is_peak = v_greater_but(w->here, v_max(below, w->before), v_max(w->next, far), w->here);
-    *w = (peak_walk){w->here, v_max(w->last, w->here), w->next, far};
-    return is_peak;
+    const vec z[5] = {w->here[0], w->here[1], v_load(here + 2 * row), v_load(here + 3 * row), v_load(here + 4 * row)};
+    const vec after[3] = {v_max(z[1], z[2]), v_max(z[2], z[3]), v_max(z[3], z[4])}, largest = v_max(w->larger[2], z[2]);
+    for (int i = 0; i < 3; i++)
+        is_peak[i] = v_greater_but(z[i], below ? v_max(below[i], w->larger[i]) : w->larger[i], after[i], z[i]);
+    *w = (peak_walk){{after[0], after[1], after[2]}, {z[3], z[4]}};
+    return largest;
+}
+
+/* Of three sectors in a row from k on the one that is a peak, and -1 where there is one. */
+static inline vec peak_of_three(int32_t k, const vec is_peak[3], vec *found)
+{
+    *found = v_or(v_or(is_peak[0], is_peak[1]), is_peak[2]);
+    return v_sub(v_sub(v_set1((int16_t)k), is_peak[1]), v_add(is_peak[2], is_peak[2]));
 }
 
 #endif
