@@ -62,6 +62,7 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for the sectors of radius %d", (int)options->field_radius);
     asj_sector_runs_places(&field->runs, s, field->place);
+    asj_sector_plan_set_steps(s, field->place, &field->plan);
     const double log_p = log(options->field_epsilon / s->count);
     const uint16_t wanted = (uint16_t)lrint(options->candidate_strength * ASJ_STRENGTH_ONE);
     for (int32_t k = 0; k < s->count; k++) {

@@ -81,8 +81,10 @@ static asj_status share_offsets(asj_memory *memory, asj_isotropic *test)
         entry->place = asj_allocate(memory, (size_t)entry->sectors.offset_count, sizeof *entry->place);
         if (!entry->place)
             return ASJ_ERROR_MEMORY;
-        if (status == ASJ_OK)
-            asj_sector_runs_places(&test->radii[entry->source].runs, &entry->sectors, entry->place);
+        if (status != ASJ_OK)
+            break;
+        asj_sector_runs_places(&test->radii[entry->source].runs, &entry->sectors, entry->place);
+        asj_sector_plan_set_steps(&entry->sectors, entry->place, &entry->plan);
     }
     return status;
 }

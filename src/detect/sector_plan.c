@@ -8,7 +8,7 @@
 static asj_status make_room(asj_memory *memory, const asj_sectors *s, asj_sector_plan *plan)
 {
     const size_t offsets = (size_t)s->offset_count, sectors = (size_t)s->count;
-    plan->memory = asj_allocate_zero(memory, 6 * offsets + 3 * sectors + 1, sizeof(int16_t));
+    plan->memory = asj_allocate_zero(memory, 8 * offsets + 3 * sectors + 1, sizeof(int16_t));
     if (!plan->memory)
         return ASJ_ERROR_MEMORY;
     plan->a = plan->memory;
@@ -20,6 +20,7 @@ static asj_status make_room(asj_memory *memory, const asj_sectors *s, asj_sector
     plan->extra = plan->boundary + offsets + 1;
     plan->low = plan->extra + sectors;
     plan->high = plan->low + sectors;
+    plan->steps = (int16_t(*)[2])(plan->high + sectors);
     return ASJ_OK;
 }
 
@@ -99,6 +100,16 @@ asj_status asj_sector_plan_create(asj_memory *memory, const asj_sectors *s, asj_
     assign_planes(s, plan);
     assign_slots(s, plan);
     return ASJ_OK;
+}
+
+void asj_sector_plan_set_steps(const asj_sectors *sectors, const int16_t *places, asj_sector_plan *plan)
+{
+    for (int32_t i = 0, slot = 0; i < sectors->offset_count; i++) {
+        while (plan->boundary[slot] <= i)
+            slot++;
+        plan->steps[i][0] = (int16_t)(places[i] * ASJ_SECTOR_RUN);
+        plan->steps[i][1] = (int16_t)(slot * ASJ_SECTOR_RUN);
+    }
 }
 
 void asj_sector_plan_free(asj_memory *memory, asj_sector_plan *plan)

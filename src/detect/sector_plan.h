@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_SECTOR_PLAN_H
 #define ASJ_SRC_SECTOR_PLAN_H
 
-#include "sector.h"
+#include "sector_runs.h"
 
 /* gamma depends on the axis of an offset only, so it is computed once for each axis and pixel, as planes, and shared by all
  * offsets on that axis. The four mirror images of an axis share their products:
@@ -25,10 +25,15 @@ typedef struct asj_sector_plan {
     int16_t *boundary;     /* plain slot j: the sum over the offsets before boundary[j], rising; the last is the total */
     int16_t *extra;        /* extra slot plain_count + e: the last plain slot plus slot extra[e] */
     int16_t *low, *high;   /* sector k: slot high[k] minus slot low[k] */
+    int16_t (*steps)[2];   /* for each offset, times ASJ_SECTOR_RUN: where its gamma stands in runs, and the slot of the running
+                            * sum: the first one whose boundary is behind the offset, so that what was put there last stays */
     void *memory;
 } asj_sector_plan;
 
 asj_status asj_sector_plan_create(asj_memory *memory, const asj_sectors *sectors, asj_sector_plan *plan);
+/* Sets the steps; places: of the offsets in runs (sector_runs.h). */
+void asj_sector_plan_set_steps(const asj_sectors *sectors, const int16_t *places, asj_sector_plan *plan);
+
 void asj_sector_plan_free(asj_memory *memory, asj_sector_plan *plan);
 
 #endif

@@ -75,24 +75,25 @@ static void batch_gammas(const asj_sector_runs *runs, const asj_frame *frame, co
     }
 }
 
-/* Slots of asj_sector_plan, then strengths, with `suppress` sectors repeated at either end. `place`: of each offset among the
- * gammas. */
-static void batch_strengths(const asj_sectors *s, const asj_sector_plan *plan, const int16_t *place, int32_t suppress,
-                            const uint16_t *gamma, uint16_t *slots, int16_t *z)
+/* Slots of asj_sector_plan, then strengths, with `suppress` sectors repeated at either end. Every running sum is stored, most of
+ * them where a later one goes: which are wanted is then no question. */
+static void batch_strengths(const asj_sectors *s, const asj_sector_plan *plan, int32_t suppress, const uint16_t *gamma,
+                            uint16_t *slots, int16_t *z)
 {
+    enum { SCALE = V_LANES / ASJ_SECTOR_RUN };
     /* what is stored might be part of the plan, for all that compilers know: its pointers are read once */
-    const int16_t *const boundary = plan->boundary, *const extra = plan->extra, *const low = plan->low, *const high = plan->high;
+    const int16_t *const extra = plan->extra, *const low = plan->low, *const high = plan->high;
     const uint16_t *const mean = s->mean, *const scale = s->scale;
     const int32_t plain_count = plan->plain_count, extra_count = plan->slot_count - plain_count, count = s->count;
+    const int16_t(*step)[2] = (const int16_t(*)[2])plan->steps;
     vec total = v_zero();
-    uint16_t *slot = slots;
-    for (int32_t j = 0, i = 0; j < plain_count; j++, slot += V_LANES) {
-        vec sum = v_zero();
-        for (const int32_t end = boundary[j]; i < end; i++)
-            sum = v_add(sum, v_load(gamma + (ptrdiff_t)place[i] * V_LANES));
-        total = v_add(total, sum);
-        v_store(slot, total);
+    v_store(slots, total); /* before the first offset a sector may begin */
+#pragma GCC unroll 4
+    for (int32_t i = 0; i < s->offset_count; i++, step++) {
+        total = v_add(total, v_load(gamma + (ptrdiff_t)step[0][0] * SCALE));
+        v_store(slots + (ptrdiff_t)step[0][1] * SCALE, total);
     }
+    uint16_t *slot = slots + (ptrdiff_t)plain_count * V_LANES;
     for (int32_t e = 0; e < extra_count; e++, slot += V_LANES)
         v_store(slot, v_add(total, v_load(slots + (ptrdiff_t)extra[e] * V_LANES)));
     int16_t *to = z + suppress * V_LANES;

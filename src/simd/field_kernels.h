@@ -75,7 +75,7 @@ static void field_pixels(const asj_field *field, const asj_frame *frame, const a
             add_to_batch(&b, pixels[i].y * frame->stride + pixels[i].x);
         fill_batch(&b);
         batch_gammas(&field->runs, frame, &b, scratch);
-        batch_strengths(s, &field->plan, field->place, field->suppress, scratch, slots, z);
+        batch_strengths(s, &field->plan, field->suppress, scratch, slots, z);
         find_branches(field, z + field->suppress * V_LANES, b.count, branches + first);
     }
 }

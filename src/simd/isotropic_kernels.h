@@ -100,7 +100,7 @@ static void finish_batch(const asj_isotropic *test, const asj_frame *frame, batc
         int16_t *z = (int16_t *)slots + (size_t)entry->plan.slot_count * V_LANES;
         if (entry->source == r)
             batch_gammas(runs, frame, b, scratch);
-        batch_strengths(&entry->sectors, &entry->plan, entry->place, entry->suppress, scratch, slots, z);
+        batch_strengths(&entry->sectors, &entry->plan, entry->suppress, scratch, slots, z);
         test_batch(test, entry, slots, z, b->count, junctions);
     }
     b->count = 0;
