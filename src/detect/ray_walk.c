@@ -148,20 +148,27 @@ void asj_ray_walk_finish(const asj_scan *scan, asj_ray *ray)
         ray->axial = ray->forward + bridge;
 }
 
-/* Whether there is an edge along the ray at radius r: three pixels across, rounded. The border's margin is zero. */
+/* gamma of a pixel, from its gradient and a direction, in 2^-24. */
+static int32_t gamma_along(int32_t gx, int32_t gy, int32_t ux, int32_t uy)
+{
+    const int32_t gamma = abs(gy * ux - gx * uy) - abs(gx * ux + gy * uy);
+    return gamma > 0 ? gamma : 0;
+}
+
+/* Whether there is an edge along the ray at radius r: three pixels across, rounded, of which the middle one is mostly enough. The
+ * border's margin is zero. */
 static int has_edge(const asj_frame *frame, const asj_ray_direction *way, int32_t r)
 {
     const int64_t x = way->x + ((r * way->ux) >> 14) + 32768, y = way->y + ((r * way->uy) >> 14) + 32768;
     const int64_t across_x = -(way->uy >> 14), across_y = way->ux >> 14;
     const int32_t ux = (int32_t)(way->ux >> 16), uy = (int32_t)(way->uy >> 16);
-    int32_t sum = 0;
+    const ptrdiff_t middle = (ptrdiff_t)(y >> 16) * frame->stride + (ptrdiff_t)(x >> 16);
     if (x >> 16 < 0 || y >> 16 < 0 || x >> 16 >= frame->width || y >> 16 >= frame->height)
         return 0;
-    for (int32_t d = -1; d <= 1; d++) {
+    int32_t sum = gamma_along(frame->gradient_x[middle], frame->gradient_y[middle], ux, uy);
+    for (int32_t d = -1; d <= 1 && sum < ASJ_SCAN_EDGE; d += 2) {
         const ptrdiff_t at = (ptrdiff_t)((y + d * across_y) >> 16) * frame->stride + (ptrdiff_t)((x + d * across_x) >> 16);
-        const int32_t gx = frame->gradient_x[at], gy = frame->gradient_y[at];
-        const int32_t gamma = abs(gy * ux - gx * uy) - abs(gx * ux + gy * uy);
-        sum += gamma > 0 ? gamma : 0;
+        sum += gamma_along(frame->gradient_x[at], frame->gradient_y[at], ux, uy);
     }
     return sum >= ASJ_SCAN_EDGE;
 }
