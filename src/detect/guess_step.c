@@ -39,11 +39,13 @@ static void guess_some(const void *data, const asj_part *part)
     const job *j = data;
     const asj_detection_run *run = j->run;
     asj_hypothesis hypothesis;
+    double units[ASJ_MAX_BRANCHES][2];
     for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++) {
         j->guesses[i].branch_count = 0;
         if (!start(run, j->known, &j->junctions[i], &hypothesis))
             continue;
-        asj_locate_guess(run->context, run->frame, run->options, &hypothesis);
+        asj_isotropic_units(run->test, &j->junctions[i], units);
+        asj_locate_guess(run->context, run->frame, run->options, (const double(*)[2])units, &hypothesis);
         if (hypothesis.branch_count > 0)
             j->guesses[i] = asj_guess_of(&hypothesis);
     }

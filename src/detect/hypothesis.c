@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TURN 65536 /* of an isotropic junction's directions */
+#define TURN ASJ_ISOTROPIC_TURN
 
 int asj_isotropic_has_opening(const asj_detect_options *options, const asj_isotropic_junction *junction)
 {
@@ -30,7 +30,7 @@ void asj_hypothesis_start(const asj_isotropic_junction *junction, asj_hypothesis
     hypothesis->log_nfa = junction->log_nfa;
     hypothesis->branch_count = junction->branch_count;
     for (int32_t i = 0; i < junction->branch_count; i++) {
-        hypothesis->branches[i].angle = junction->angle[i] * (ASJ_TWO_PI / TURN);
+        hypothesis->branches[i].angle = asj_isotropic_angle(junction->angle[i]);
         hypothesis->branches[i].strength = (double)junction->strength[i] / ASJ_STRENGTH_ONE;
     }
 }

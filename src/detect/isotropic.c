@@ -135,7 +135,7 @@ void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *
     best->radius = (uint16_t)s->radius;
     best->branch_count = (uint16_t)branches;
     for (int32_t i = 0; i < branches; i++) {
-        best->angle[i] = (uint16_t)(65536 * chosen[i].sector / s->count);
+        best->angle[i] = (uint16_t)(ASJ_ISOTROPIC_TURN * chosen[i].sector / s->count);
         best->strength[i] = chosen[i].strength;
     }
 }

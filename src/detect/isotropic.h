@@ -3,10 +3,14 @@
 #ifndef ASJ_SRC_ISOTROPIC_H
 #define ASJ_SRC_ISOTROPIC_H
 
+#include "core/angle.h"
 #include "field.h"
 #include "null_model.h"
 
 #define ASJ_MAX_RADIUS 30
+
+/* Directions of a junction are in so many parts of a turn. */
+#define ASJ_ISOTROPIC_TURN 65536
 
 /* A junction with one radius for all branches. */
 typedef struct asj_isotropic_junction {
@@ -32,6 +36,7 @@ typedef struct asj_isotropic_radius {
     const double *lowest_tail; /* the lowest of them: that of the sector with the fewest pixels */
     double lowest_end;    /* and the largest sum that such a sector may have: its table ends there */
     int32_t least_sum[ASJ_MAX_BRANCHES + 1]; /* of M branches the weakest has at least this sum, or they are not meaningful */
+    double (*units)[2];   /* for each sector: cosine and sine of its direction, as junctions have it */
     uint16_t *least;      /* for each sector: the least strength of a branch that may be one of meaningful ones */
 } asj_isotropic_radius;
 
@@ -58,6 +63,9 @@ void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, in
 
 /* Whether a junction that was tested is one: meaningful, at enough radii in a row. */
 int asj_isotropic_persists(const asj_isotropic *test, const asj_isotropic_junction *junction);
+
+/* Cosine and sine of the directions of a junction that the test has made. */
+void asj_isotropic_units(const asj_isotropic *test, const asj_isotropic_junction *junction, double units[ASJ_MAX_BRANCHES][2]);
 
 /* Tests a pixel. A candidate that no radius makes meaningful has branch_count 0. */
 void asj_isotropic_pixel(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
@@ -88,6 +96,12 @@ typedef struct asj_isotropic_peak {
     int32_t sector;
     uint16_t sum, strength;
 } asj_isotropic_peak;
+
+/* rad */
+static inline double asj_isotropic_angle(uint16_t angle)
+{
+    return angle * (ASJ_TWO_PI / ASJ_ISOTROPIC_TURN);
+}
 
 /* ln F at junction-ness t >= 0 from one of the tables. */
 static inline double asj_isotropic_log_tail(const double *table, double t)

@@ -38,6 +38,14 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     entry->least = asj_allocate_zero(&context->memory, (size_t)entry->sectors.count, sizeof *entry->least);
     if (!entry->least)
         return ASJ_ERROR_MEMORY;
+    entry->units = asj_allocate(&context->memory, (size_t)entry->sectors.count, sizeof *entry->units);
+    if (!entry->units)
+        return ASJ_ERROR_MEMORY;
+    for (int32_t k = 0; k < entry->sectors.count; k++) {
+        const double angle = asj_isotropic_angle((uint16_t)(ASJ_ISOTROPIC_TURN * k / entry->sectors.count));
+        entry->units[k][0] = cos(angle);
+        entry->units[k][1] = sin(angle);
+    }
     int32_t fewest = entry->sectors.size[0];
     for (int32_t k = 0; k < entry->sectors.count; k++) {
         entry->tails[k] = find_tails(context, test, entry->sectors.size[k]);
@@ -115,12 +123,25 @@ void asj_isotropic_free(asj_memory *memory, asj_isotropic *test)
         asj_release(memory, test->radii[i].place);
         asj_sector_runs_free(memory, &test->radii[i].runs);
         asj_release(memory, test->radii[i].least);
+        asj_release(memory, test->radii[i].units);
         asj_sector_plan_free(memory, &test->radii[i].plan);
         asj_sectors_free(memory, &test->radii[i].sectors);
     }
     for (size_t i = 0; i < sizeof test->tail_tables / sizeof test->tail_tables[0]; i++)
         asj_release(memory, test->tail_tables[i]);
     memset(test, 0, sizeof *test);
+}
+
+void asj_isotropic_units(const asj_isotropic *test, const asj_isotropic_junction *junction, double units[ASJ_MAX_BRANCHES][2])
+{
+    const asj_isotropic_radius *entry = test->radii;
+    while (entry->sectors.radius != junction->radius)
+        entry++;
+    for (int32_t i = 0; i < junction->branch_count; i++) {
+        /* the angle is the whole part of TURN k / count */
+        const int32_t k = (junction->angle[i] * entry->sectors.count + ASJ_ISOTROPIC_TURN - 1) / ASJ_ISOTROPIC_TURN;
+        memcpy(units[i], entry->units[k], sizeof units[i]);
+    }
 }
 
 /* The least sum of sector k with ln F <= log_p; more than any sum when there is none. */

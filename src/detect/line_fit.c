@@ -163,16 +163,16 @@ static int choose(const samples *in, const asj_line_range *range, int variances,
     return 1;
 }
 
-int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
-                 asj_hypothesis_branch *branch)
+int asj_line_fit_along(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_rough_line *along,
+                       const asj_line_range *range, asj_hypothesis_branch *branch)
 {
-    const axis along = {x, y, cos(branch->angle), sin(branch->angle)};
+    const axis from = {x, y, along->ux, along->uy};
     line found = {branch->offset, 0, 0, 0};
     double apart = branch->apart;
     samples list;
     for (int32_t i = 0; i < range->iterations; i++) {
         double half_width = range->half_width[i] + 0.5 * apart;
-        collect(ops, frame, &along, range, half_width < WIDEST ? half_width : WIDEST, &found, &list);
+        collect(ops, frame, &from, range, half_width < WIDEST ? half_width : WIDEST, &found, &list);
         if (!choose(&list, range, i + 1 == range->iterations, &found, &apart))
             return 0;
     }
@@ -184,6 +184,13 @@ int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, doub
     branch->offset_variance = found.a_variance;
     branch->angle_variance = found.b_variance;
     return 1;
+}
+
+int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
+                 asj_hypothesis_branch *branch)
+{
+    const asj_rough_line along = asj_rough_line_of(branch);
+    return asj_line_fit_along(ops, frame, x, y, &along, range, branch);
 }
 
 asj_rough_line asj_rough_line_of(const asj_hypothesis_branch *branch)

@@ -12,16 +12,20 @@ typedef struct asj_line_range {
     int32_t iterations;   /* 1 .. 3 */
 } asj_line_range;
 
-/* Moves branch->angle and branch->offset to the line under the branch of a junction at (x, y); sets their variances. branch->offset
- * is where the search starts. Returns 0, and leaves the branch alone, when there is too little edge. */
-int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
-                 asj_hypothesis_branch *branch);
-
 /* The line under a branch as guesses move it: by its direction, since angles take longer. */
 typedef struct asj_rough_line {
     double ux, uy;
     double offset, apart; /* as in asj_hypothesis_branch */
 } asj_rough_line;
+
+/* Moves branch->angle and branch->offset to the line under the branch of a junction at (x, y); sets their variances. branch->offset
+ * is where the search starts. Returns 0, and leaves the branch alone, when there is too little edge. */
+int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
+                 asj_hypothesis_branch *branch);
+
+/* The same where the branch's direction is known already: that of `along`, nothing else of which counts. */
+int asj_line_fit_along(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_rough_line *along,
+                       const asj_line_range *range, asj_hypothesis_branch *branch);
 
 asj_rough_line asj_rough_line_of(const asj_hypothesis_branch *branch);
 void asj_rough_line_keep(const asj_rough_line *rough, asj_hypothesis_branch *branch);

@@ -12,6 +12,7 @@
 #include "core/angle.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Least determinant of the normal matrix, relative to the square of the sum of weights. Two lines of weight w that open by phi have
  * (w sin phi)^2, so 0.02 is an opening of asin(sqrt(4 x 0.02)) = 16.4 degrees. Chosen below minimum_opening (25), so that it
@@ -107,13 +108,12 @@ static int meet_lines(const asj_rough_line *lines, const double *weights, int32_
     return 1;
 }
 
-int asj_locate_meet(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
+/* As asj_locate_meet(), of the branches' lines. */
+static int meet(const asj_frame *frame, const asj_detect_options *options, const asj_rough_line *lines, asj_hypothesis *hypothesis)
 {
     const int alike = options->strip_test && frame->octave <= 0;
-    asj_rough_line lines[ASJ_MAX_BRANCHES];
     double weights[ASJ_MAX_BRANCHES], ones[ASJ_MAX_BRANCHES];
     meeting m;
-    get_lines(hypothesis, lines);
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         weights[i] = 1 / hypothesis->branches[i].offset_variance;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
@@ -127,6 +127,13 @@ int asj_locate_meet(const asj_frame *frame, const asj_detect_options *options, a
     return 1;
 }
 
+int asj_locate_meet(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
+{
+    asj_rough_line lines[ASJ_MAX_BRANCHES];
+    get_lines(hypothesis, lines);
+    return meet(frame, options, lines, hypothesis);
+}
+
 static double fit_first(const asj_hypothesis *hypothesis)
 {
     return hypothesis->first > FIRST ? hypothesis->first : FIRST;
@@ -137,12 +144,14 @@ static double fit_end(const asj_hypothesis *hypothesis)
     return (hypothesis->radius > LEAST_END ? hypothesis->radius : LEAST_END) + (fit_first(hypothesis) - FIRST);
 }
 
+/* Their directions are those of the lines. */
 static void fit_branches(const asj_context *context, const asj_frame *frame, const asj_line_range *range,
-                         asj_hypothesis *hypothesis)
+                         const asj_rough_line *lines, asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        keep[i] = asj_line_fit(context->ops->line, frame, hypothesis->x, hypothesis->y, range, &hypothesis->branches[i]);
+        keep[i] = asj_line_fit_along(context->ops->line, frame, hypothesis->x, hypothesis->y, &lines[i], range,
+                                     &hypothesis->branches[i]);
     asj_hypothesis_select(hypothesis, keep);
 }
 
@@ -220,13 +229,13 @@ static int guess_meeting(const asj_detect_options *options, const asj_rough_line
 
 /* The lines from `first` px on. *astray is set when they open but make no junction here. */
 static void guess_from(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double first,
-                       asj_hypothesis *hypothesis, int *astray)
+                       const asj_rough_line *start, asj_hypothesis *hypothesis, int *astray)
 {
     const double least = fmax((options->minimum_opening - GUESS_TURN) * ASJ_DEGREE, 0);
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     meeting m;
     hypothesis->first = first;
-    get_lines(hypothesis, lines);
+    memcpy(lines, start, (size_t)hypothesis->branch_count * sizeof *lines);
     guess_lines(context, frame, GUESS_WIDTH, LEAST_END + (first - FIRST), hypothesis, lines); /* enough to tell edges */
     if (!have_opening(lines, hypothesis->branch_count, least)) { /* most of the others */
         hypothesis->branch_count = 0;
@@ -244,18 +253,24 @@ static void guess_from(const asj_context *context, const asj_frame *frame, const
 }
 
 void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                      asj_hypothesis *hypothesis)
+                      const double (*units)[2], asj_hypothesis *hypothesis)
 {
     const asj_hypothesis before = *hypothesis;
+    asj_rough_line lines[ASJ_MAX_BRANCHES];
     int astray = 0;
     if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;
-    guess_from(context, frame, options, FIRST, hypothesis, &astray);
+    if (units)
+        for (int32_t i = 0; i < hypothesis->branch_count; i++)
+            lines[i] = (asj_rough_line){units[i][0], units[i][1], hypothesis->branches[i].offset, hypothesis->branches[i].apart};
+    else
+        get_lines(hypothesis, lines);
+    guess_from(context, frame, options, FIRST, lines, hypothesis, &astray);
     if (!astray || frame->octave <= 0)
         return;
     /* close by, soft edges bend so much that their lines miss the corner: coarse octaves, to which it is left, look farther out */
     *hypothesis = before;
-    guess_from(context, frame, options, SOFT_FIRST, hypothesis, &astray);
+    guess_from(context, frame, options, SOFT_FIRST, lines, hypothesis, &astray);
 }
 
 void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
@@ -268,9 +283,9 @@ void asj_locate(const asj_context *context, const asj_frame *frame, const asj_de
     get_lines(hypothesis, lines);
     /* back to the pixel: a guess is good enough to tell twins, not to start from */
     move(hypothesis, lines, hypothesis->x0 - hypothesis->x, hypothesis->y0 - hypothesis->y);
-    fit_branches(context, frame, &fine, hypothesis);
+    fit_branches(context, frame, &fine, lines, hypothesis);
     get_lines(hypothesis, lines);
-    if (!asj_hypothesis_has_opening(hypothesis, least) || !asj_locate_meet(frame, options, hypothesis) ||
+    if (!asj_hypothesis_has_opening(hypothesis, least) || !meet(frame, options, lines, hypothesis) ||
         hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > most_move(options, lines, hypothesis->branch_count))
         hypothesis->branch_count = 0;
 }

@@ -6,9 +6,10 @@
 #include "line_fit.h"
 
 /* Fits the branches' lines near the junction and moves it to where they meet; branch_count 0 when it is no junction. First a
- * guess, with some slack in what is asked of its lines, then the fit that counts. */
+ * guess, with some slack in what is asked of its lines, then the fit that counts. units: cosine and sine of the branches' angles,
+ * where they are known; NULL = they are not. */
 void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                      asj_hypothesis *hypothesis);
+                      const double (*units)[2], asj_hypothesis *hypothesis);
 void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis);
 
 /* px that a junction with these branches may move while it is located: max_move, or somewhat more at sharp corners. */

@@ -11,7 +11,7 @@ typedef unit_fixture fixture;
 
 static void locate(const fixture *f, const asj_frame *frame, asj_hypothesis *hypothesis)
 {
-    asj_locate_guess(f->context, frame, &f->options, hypothesis);
+    asj_locate_guess(f->context, frame, &f->options, NULL, hypothesis);
     asj_locate(f->context, frame, &f->options, hypothesis);
 }
 
