@@ -45,6 +45,7 @@ static void set_limits(asj_field *field)
 {
     const asj_sectors *s = &field->sectors;
     for (int32_t k = 0; k < s->count; k++) {
+        field->angle[k] = 65536 * k / s->count;
         const int32_t limits[4] = {s->mean[k], s->scale[k], field->keep[k] - 1, field->candidate[k] - 1};
         for (int32_t i = 0; i < 4; i++)
             field->limits[k][i] = asj_sector_twice(limits[i]);
@@ -148,7 +149,7 @@ void asj_field_pixel(const asj_field *field, const asj_frame *frame, int32_t x, 
     memset(branches, 0, ASJ_FIELD_BRANCHES * sizeof *branches);
     for (int32_t i = 0; i < found; i++) {
         const int32_t k = peaks[i], before = z[k > 0 ? k - 1 : count - 1], after = z[k + 1 < count ? k + 1 : 0];
-        const int32_t angle = 65536 * k / count + asj_field_shift(65536 / count, before, z[k], after);
+        const int32_t angle = field->angle[k] + asj_field_shift(65536 / count, before, z[k], after);
         asj_field_insert(branches, (asj_field_branch){(uint16_t)angle, z[k]});
     }
 }

@@ -29,6 +29,7 @@ typedef struct asj_field {
     int16_t place[ASJ_FIELD_MAX_OFFSETS];      /* of each offset in the runs */
     uint16_t keep[ASJ_FIELD_MAX_SECTORS];      /* least strength of a branch */
     uint16_t candidate[ASJ_FIELD_MAX_SECTORS]; /* least strength of a branch that makes a candidate */
+    int32_t angle[ASJ_FIELD_MAX_SECTORS];      /* in 1/65536 of a turn */
     int32_t suppress;                          /* sectors to either side over which a branch must be the largest */
     int32_t apart;                             /* sectors that the two branches of a candidate are from 0 and from pi, at least */
     int32_t step;                              /* option candidate_step */

@@ -57,7 +57,7 @@ static void find_branches(const asj_field *field, const int16_t *z, int32_t coun
         for (int32_t m = 0; m < ASJ_FIELD_BRANCHES && strengths[m][i]; m++) {
             const int32_t k = sectors[m][i];
             const int16_t *here = z + k * V_LANES + i;
-            const int32_t angle = 65536 * k / field->sectors.count + asj_field_shift(width, here[-V_LANES], *here, here[V_LANES]);
+            const int32_t angle = field->angle[k] + asj_field_shift(width, here[-V_LANES], *here, here[V_LANES]);
             branches[i][m] = (asj_field_branch){(uint16_t)angle, strengths[m][i]};
         }
 }
