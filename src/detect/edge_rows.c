@@ -63,7 +63,7 @@ int32_t asj_edge_rows(const asj_edge_line *line, int32_t first, int32_t step, in
     return count;
 }
 
-const asj_edge_ops asj_edge_reference = {.rows = asj_edge_rows};
+const asj_edge_ops asj_edge_reference = {.rows = asj_edge_rows, .fan = asj_edge_fan_means};
 
 void asj_edge_parts(const int32_t *levels, ptrdiff_t room, int32_t count, const double section[ASJ_EDGE_SAMPLES], double *parts)
 {

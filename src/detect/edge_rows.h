@@ -4,6 +4,7 @@
 #define ASJ_SRC_EDGE_ROWS_H
 
 #include "core/image.h"
+#include "edge_fan.h"
 #include "hypothesis.h"
 
 #define ASJ_EDGE_HALF 2 /* px to either side of the line */
@@ -41,6 +42,8 @@ int asj_edge_section(const double *means, int32_t count, double section[ASJ_EDGE
 typedef struct asj_edge_ops {
     /* asj_edge_rows() */
     int32_t (*rows)(const asj_edge_line *line, int32_t first, int32_t step, int32_t count, int32_t *levels, ptrdiff_t room);
+    /* asj_edge_fan_means() */
+    void (*fan)(const asj_frame *frame, const asj_edge_fan *fan, double x, double y, double means[ASJ_FAN_RAYS]);
 } asj_edge_ops;
 extern const asj_edge_ops asj_edge_reference;
 

@@ -3,8 +3,8 @@
  * looked for along short rays: from places on the branch's line up to AROUND px before and behind E, in directions up to MOST
  * degrees off either side of it, and from E on ahead. A ray has an edge under it when the mean of
  *     gamma = max(|g.n| - |g.u|, 0)        (n, u: across and along the ray; strip.c)
- * over r = NEAR .. FAR px is at least EDGE. In noise the mean of seven is that large once in 4000 times (by simulation), and
- * rays side by side share pixels.
+ * over r = 2 .. 8 px (edge_fan.c) is at least EDGE. In noise the mean of seven is that large once in 4000 times (by simulation),
+ * and rays side by side share pixels.
  *   - E within BORDER px of the image's border, along the branch: the border;
  *   - an edge to both sides, in one line to within STRAIGHT, and none ahead: an edge passes by, and the branch may go on behind
  *     what it bounds: an occlusion;
@@ -12,8 +12,6 @@
  *   - none: the branch fades. */
 #include "end_kind.h"
 #include "end_profile.h"
-#include "gradient.h"
-#include "strip.h"
 #include "core/angle.h"
 
 #include <math.h>
@@ -21,8 +19,6 @@
 
 #define AROUND 3     /* px */
 #define SHIFT 1.5    /* px from one place to the next */
-#define NEAR 2       /* px: first sample of a ray */
-#define FAR 8        /* px: last */
 #define LEAST 30     /* deg between a ray and the branch's line, .. */
 #define MOST 150
 #define STEP 10      /* deg from one ray to the next */
@@ -44,57 +40,58 @@ void asj_end_rays_make(asj_end_rays *rays)
     }
 }
 
-/* Mean of gamma from (x, y) along (ux, uy). Outside the image the gradient is zero; its margin is wider than a ray is long. */
-static double edge_along(const asj_frame *frame, double x, double y, double ux, double uy)
-{
-    double sum = 0;
-    for (int32_t r = NEAR; r <= FAR; r++) {
-        const int32_t px = asj_strip_floor(x + r * ux + 0.5), py = asj_strip_floor(y + r * uy + 0.5);
-        const ptrdiff_t at = py * frame->stride + px;
-        const double gx = frame->gradient_x[at], gy = frame->gradient_y[at];
-        const double gamma = fabs(gy * ux - gx * uy) - fabs(gx * ux + gy * uy);
-        sum += gamma + fabs(gamma); /* twice what is above 0, without a jump that cannot be foreseen */
-    }
-    return 0.5 * sum / ((FAR - NEAR + 1) * ASJ_GRADIENT_ONE);
-}
-
 /* An end, and the direction in which its branch comes there. */
 typedef struct arrival {
     double x, y, ux, uy;
 } arrival;
 
-/* The same from a place `shift` px behind the end, along a ray turned by `turn` steps to one side (1: growing angles, -1). */
-static double edge_from(const asj_frame *frame, const asj_end_rays *rays, const arrival *end, double shift, int32_t turn, int side)
+/* One ray more, turned by `turn` steps to one side (1: growing angles, -1). */
+static void add_ray(const asj_end_rays *rays, const arrival *end, int32_t turn, int side, asj_edge_fan *fan)
 {
     const double c = rays->cosine[turn], s = side * rays->sine[turn];
-    return edge_along(frame, end->x + shift * end->ux, end->y + shift * end->uy, c * end->ux - s * end->uy,
-                      c * end->uy + s * end->ux);
+    fan->ux[fan->count] = c * end->ux - s * end->uy;
+    fan->uy[fan->count++] = c * end->uy + s * end->ux;
+}
+
+/* From a place `shift` px behind the end. */
+static void look_along(const asj_edge_ops *ops, const asj_frame *frame, const asj_edge_fan *fan, const arrival *end, double shift,
+                       double edges[ASJ_FAN_RAYS])
+{
+    ops->fan(frame, fan, end->x + shift * end->ux, end->y + shift * end->uy, edges);
 }
 
 /* The strongest edge to one side from around the end: its angle from the branch's line in degrees; 0 when there is none. */
-static double edge_beside(const asj_frame *frame, const asj_end_rays *rays, const arrival *end, int side)
+static double edge_beside(const asj_edge_ops *ops, const asj_frame *frame, const asj_end_rays *rays, const arrival *end, int side)
 {
-    double best = EDGE, found = 0;
-    for (double shift = -AROUND; shift <= AROUND; shift += SHIFT)
-        for (int32_t turn = LEAST / STEP; turn <= MOST / STEP; turn++) {
-            const double edge = edge_from(frame, rays, end, shift, turn, side);
-            if (edge > best) {
-                best = edge;
-                found = turn * STEP;
+    double best = EDGE, found = 0, edges[ASJ_FAN_RAYS];
+    asj_edge_fan fan = {0};
+    for (int32_t turn = LEAST / STEP; turn <= MOST / STEP; turn++)
+        add_ray(rays, end, turn, side, &fan);
+    for (double shift = -AROUND; shift <= AROUND; shift += SHIFT) {
+        look_along(ops, frame, &fan, end, shift, edges);
+        for (int32_t i = 0; i < fan.count; i++)
+            if (edges[i] > best) {
+                best = edges[i];
+                found = LEAST + i * STEP;
             }
-        }
+    }
     return found;
 }
 
-static int edge_ahead(const asj_frame *frame, const asj_end_rays *rays, const arrival *end)
+static int edge_ahead(const asj_edge_ops *ops, const asj_frame *frame, const asj_end_rays *rays, const arrival *end)
 {
+    double edges[ASJ_FAN_RAYS];
+    asj_edge_fan fan = {0};
+    int found = 0;
     for (int32_t turn = -AHEAD / STEP; turn <= AHEAD / STEP; turn++)
-        if (edge_from(frame, rays, end, AROUND, abs(turn), turn < 0 ? -1 : 1) > EDGE)
-            return 1;
-    return 0;
+        add_ray(rays, end, abs(turn), turn < 0 ? -1 : 1, &fan);
+    look_along(ops, frame, &fan, end, AROUND, edges);
+    for (int32_t i = 0; i < fan.count; i++)
+        found |= edges[i] > EDGE;
+    return found;
 }
 
-static int32_t kind_of(const asj_frame *frame, const asj_end_rays *rays, const asj_hypothesis *hypothesis,
+static int32_t kind_of(const asj_edge_ops *ops, const asj_frame *frame, const asj_end_rays *rays, const asj_hypothesis *hypothesis,
                        const asj_hypothesis_branch *branch)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle);
@@ -102,8 +99,8 @@ static int32_t kind_of(const asj_frame *frame, const asj_end_rays *rays, const a
     const double bx = end.x + BORDER * ux, by = end.y + BORDER * uy;
     if (bx < 0 || by < 0 || bx > frame->width - 1 || by > frame->height - 1)
         return ASJ_BRANCH_END_BORDER;
-    const double left = edge_beside(frame, rays, &end, -1), right = edge_beside(frame, rays, &end, 1);
-    if (left > 0 && right > 0 && fabs(left + right - 180) <= STRAIGHT && !edge_ahead(frame, rays, &end))
+    const double left = edge_beside(ops, frame, rays, &end, -1), right = edge_beside(ops, frame, rays, &end, 1);
+    if (left > 0 && right > 0 && fabs(left + right - 180) <= STRAIGHT && !edge_ahead(ops, frame, rays, &end))
         return ASJ_BRANCH_END_OCCLUSION;
     return left > 0 || right > 0 ? ASJ_BRANCH_END_CROSSING : ASJ_BRANCH_END_FADED;
 }
@@ -162,7 +159,7 @@ void asj_end_kinds(const asj_edge_ops *ops, const asj_frame *frame, const asj_en
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         if (hypothesis->branches[i].end != ASJ_BRANCH_END_JUNCTION) {
             asj_hypothesis_branch *branch = &hypothesis->branches[i];
-            branch->end = kind_of(frame, rays, hypothesis, branch);
+            branch->end = kind_of(ops, frame, rays, hypothesis, branch);
             if (options->end_contrast <= 0)
                 branch->end_variance = scan_variance(ops, frame, hypothesis, branch);
         }

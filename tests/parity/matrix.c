@@ -31,7 +31,7 @@ static const struct {
     SLOT(scan, rays),
     SLOT(strip, sums),
     SLOT(wedge, add_up),
-    SLOT(edge, rows),
+    SLOT(edge, rows), SLOT(edge, fan),
     SLOT(patch, levels), SLOT(patch, normalise), SLOT(patch, products),
     SLOT(describe, frames),
     SLOT(bound, above),

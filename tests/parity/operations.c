@@ -350,6 +350,29 @@ static asj_status run_edge_rows(asj_context *context, const subject *s, uint16_t
     return ASJ_OK;
 }
 
+static size_t edge_fan_size(const subject *s)
+{
+    (void)s;
+    return ASJ_FAN_RAYS * sizeof(double);
+}
+
+/* Any number of rays in any direction, from in and around the image. */
+static asj_status run_edge_fan(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    synth_random random = s->random;
+    double x, y, length, *means = output;
+    const double angle = choose_line(s, &random, &x, &y, &length);
+    asj_edge_fan fan = {.count = 1 + (int32_t)(ASJ_FAN_RAYS * synth_random_unit(&random))};
+    (void)scratch;
+    for (int32_t i = 0; i < fan.count; i++) {
+        fan.ux[i] = cos(angle + 0.3 * i);
+        fan.uy[i] = sin(angle + 0.3 * i);
+    }
+    context->ops->edge->fan(&s->frame, &fan, x, y, means);
+    memset(means + fan.count, 0, (size_t)(ASJ_FAN_RAYS - fan.count) * sizeof *means);
+    return ASJ_OK;
+}
+
 static double one_line(const subject *s)
 {
     return s->frame.width;
@@ -365,6 +388,7 @@ const operation operations[] = {
     {"strip", 0, strip_size, one_run, NULL, run_strip},
     {"wedge", 0, wedge_size, one_run, NULL, run_wedge},
     {"edge rows", 0, edge_rows_size, one_run, NULL, run_edge_rows},
+    {"edge fan", 0, edge_fan_size, one_run, NULL, run_edge_fan},
     {"blur row", 0, blur_size, one_line, NULL, run_blur},
     {"pyramid samples", 0, samples_size, one_run, NULL, run_samples},
     {"discs", 0, discs_size, one_run, NULL, run_discs},

@@ -7,6 +7,7 @@
 #include "colour.h"
 #include "discs.h"
 #include "edges.h"
+#include "fans.h"
 #include "gates.h"
 #include "lines.h"
 #include "patches.h"
@@ -26,6 +27,7 @@ void asj_fill_avx2(const asj_ops *ops)
     ops->strip->sums = strip_sums_avx2;
     ops->wedge->add_up = wedge_add_up;
     ops->edge->rows = edge_rows_avx2;
+    ops->edge->fan = edge_fan_avx2;
     ops->patch->levels = patch_levels_avx2;
     ops->patch->normalise = patch_normalise_avx2;
     ops->disc->compare = disc_compare_avx2;
