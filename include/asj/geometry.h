@@ -101,7 +101,8 @@ typedef struct asj_geometry {
                               * from where the matches lie, src/match/final_pose.c) */
     asj_camera cameras[2];   /* of image 1 and image 2: those that the motion was estimated with, given or found; fx is 0 without a
                               * motion */
-    double log10_nfa;        /* log10 of how often chance brings such a geometry in a pair of unrelated images */
+    double log10_nfa;        /* log10 of how often chance brings such a geometry in a pair of unrelated images; where its matches
+                              * alone leave that open, such a geometry with pictures that agree so well */
     double rival_log10_nfa;  /* .. the best other one, which has other matches: its rival */
     double inliers;          /* sum of the candidates' probabilities */
     double focal_sd;         /* of the log of the focal length, where it was found; 0 where it was given exactly */

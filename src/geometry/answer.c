@@ -157,7 +157,7 @@ static int32_t choose(asj_estimation *e, asj_geometry *result, int32_t *determin
     int32_t chosen = best;
     *determined = 1;
     if (best >= 0 && essential >= 0 && !only_turns(e, essential, turned) && is_believed(e, essential, best) &&
-        asj_estimation_log10_nfa(e, &e->finalists[essential]) <= log10(e->options->epsilon))
+        asj_estimation_counts(e, essential))
         *determined = set_pose(e, essential, result);
     if (best >= 0 && best == essential && !result->has_pose)
         chosen = instead_of(e, best);
@@ -249,6 +249,8 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     result->picture_agreement = asj_agreement_of_first(e, &e->finalists[best]);
     if (second >= 0)
         describe_rival(e, second, result);
+    if (result->log10_nfa > log10(e->options->epsilon))
+        result->log10_nfa += asj_estimation_log10_agreement(e, 0);
     if (result->log10_nfa > log10(e->options->epsilon) || asj_pictures_disagree_with_first(e, result->log10_nfa))
         return ASJ_OK;
     result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;

@@ -15,11 +15,12 @@
  * turned. But what turns the room over is never preferred to what leaves it upright, whatever colours and pictures say.
  *
  * And pictures disagree with a geometry by themselves where they agree (picture_agreement.c) by less than AGREEMENT, which goes
- * down where it has MUCH evidence. */
+ * down where it has MUCH evidence. (Rooms 1000 to 1199: of 182 right motions the agreement is .78 in the median, .51 in one of 20,
+ * .34, .37 and .39 in three; of 85 geometries that unrelated rooms have with a log10 NFA below -7, some with -130, .29 and in one
+ * of 20 .57. Video frames of what has hardly a plane: .37 and more.) */
 #include "contradiction.h"
 #include "colour_vote.h"
 #include "likelihood.h"
-#include "picture_agreement.h"
 #include "picture_vote.h"
 #include "upright.h"
 
@@ -33,17 +34,17 @@
 #define LEAST_HELD 1e-3
 #define OF_FEW 1.5 /* pictures count so much less beside few matches (131 rooms: without, 2 more accepted, one pose wrong) */
 #define UPRIGHT_AHEAD 1.4
-#define BETTER 4.0 /* what agrees better by 1/BETTER contradicts the other one */
+#define BETTER 4.0   /* what agrees better by 1/BETTER contradicts the other one */
 #define AGREEMENT 0.36
 #define MUCH (-60.0) /* log10 NFA */
 #define VERY_MUCH (-150.0)
 #define AGREEMENT_GOES_DOWN 0.16 /* from one to the other */
 #define LEAST_AGREEMENT 0.1
-#define LEAST_TOLD 0.01 /* 0: nobody has looked */
+#define LEAST_TOLD 0.01          /* 0: nobody has looked */
 
 /* Raises e->elsewhere[k] to how probable it is under the geometry of the probabilities `mine` that the place of candidate k in
- * image `side` is matched with something else: the mean of all else that it is matched with
- * lies farther than SAME_THING from the candidate's own point. */
+ * image `side` is matched with something else: the mean of all else that it is matched with lies farther than SAME_THING from the
+ * candidate's own point. */
 static void find_elsewhere(const asj_estimation *e, int32_t side, const double *mine)
 {
     double *const held = e->vote; /* of a place: probability, and the same times x and y of what it is matched with */
@@ -92,7 +93,7 @@ static double against(const asj_estimation *e, const double *first, const double
         return colours;
     const asj_look *of_first = &e->pictures->looks[first_look], *of_second = &e->pictures->looks[1 - first_look];
     const double seen = asj_pictures_against(of_first, of_second) +
-                        BETTER * fmax(0, e->agreement[first_look] - e->agreement[1 - first_look]);
+                        BETTER * fmax(0, e->agreement[first_look].share - e->agreement[1 - first_look].share);
     return colours + (asj_inliers(&e->set, e->scratch.probability) < ASJ_FEW_MATCHES ? seen / OF_FEW : seen);
 }
 
@@ -159,7 +160,7 @@ int32_t asj_contradicts(asj_estimation *e, const asj_model *other)
 static int32_t disagrees(const asj_estimation *e, int32_t look, double log10_nfa)
 {
     const double beyond = fmax(0, MUCH - log10_nfa) / (MUCH - VERY_MUCH);
-    return e->agreement[look] < fmax(LEAST_AGREEMENT, AGREEMENT - beyond * AGREEMENT_GOES_DOWN);
+    return e->agreement[look].share < fmax(LEAST_AGREEMENT, AGREEMENT - beyond * AGREEMENT_GOES_DOWN);
 }
 
 int32_t asj_pictures_disagree_with_first(const asj_estimation *e, double log10_nfa)
@@ -175,5 +176,5 @@ int32_t asj_pictures_disagree_with_other(asj_estimation *e, const asj_model *oth
 
 double asj_agreement_of_first(const asj_estimation *e, const asj_model *first)
 {
-    return e->pictures && first->kind != ASJ_GEOMETRY_FUNDAMENTAL ? fmax(LEAST_TOLD, e->agreement[0]) : 0;
+    return e->pictures && first->kind != ASJ_GEOMETRY_FUNDAMENTAL ? fmax(LEAST_TOLD, e->agreement[0].share) : 0;
 }

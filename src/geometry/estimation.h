@@ -5,7 +5,7 @@
 
 #include "adjust.h"
 #include "focal.h"
-#include "picture_look.h"
+#include "picture_agreement.h"
 #include "search.h"
 
 #define ASJ_MOST_KINDS 3
@@ -25,7 +25,7 @@ typedef struct asj_estimation {
     double *elsewhere; /* contradiction.c: of each candidate, how sure its places are matched with something else */
     double *vote;  /* colour_vote.c, contradiction.c: four numbers of each place */
     asj_pictures *pictures; /* NULL: nobody has shown them */
-    double agreement[2];    /* of their looks (picture_agreement.h) */
+    asj_agreement agreement[2]; /* of their looks */
     asj_focal_search *focal_search; /* NULL: nobody asks for it */
     asj_focal focal;
     asj_focal rotation_focal; /* the same, of a camera that only turns */
@@ -52,5 +52,12 @@ int32_t asj_estimation_best_rotation(const asj_estimation *e);
 
 /* log10 of how many such geometries chance brings. */
 double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m);
+
+/* May chance be ruled out? Of what is hardly more than chance by itself that depends on the pictures, where there are some. */
+int32_t asj_estimation_counts(const asj_estimation *e, int32_t number);
+
+/* log10 of how often chance brings pictures that agree so well with number 0 or 1 of their looks: 0 to -ASJ_MOST_BY_PICTURES. */
+#define ASJ_MOST_BY_PICTURES 3.0
+double asj_estimation_log10_agreement(const asj_estimation *e, int32_t look);
 
 #endif

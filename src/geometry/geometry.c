@@ -205,7 +205,7 @@ static asj_status search_rivals(asj_estimation *e)
     const int32_t epipolar = found ? ASJ_GEOMETRY_ESSENTIAL : epipolar_kind(e->options);
     asj_search kinds[2];
     int32_t kind_count = 0, more = 0;
-    if (is_chance(e, best))
+    if (!asj_estimation_counts(e, best))
         return ASJ_OK;
     if (epipolar != ASJ_GEOMETRY_NONE)
         kinds[kind_count++] = plan(e, epipolar, 0);

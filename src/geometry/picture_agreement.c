@@ -68,7 +68,7 @@ static void add_cell(const asj_look *look, int32_t n, gain *block)
     block->cells++;
 }
 
-double asj_pictures_agreement(const asj_look *look)
+asj_agreement asj_pictures_agreement(const asj_look *look)
 {
     gain all = {0, 0, 0};
     for (int32_t row = 0; row < ASJ_CELLS_ALONG; row += BLOCK)
@@ -81,5 +81,6 @@ double asj_pictures_agreement(const asj_look *look)
                 all.known += block.known / block.cells;
             }
         }
-    return (all.said + USUAL * LITTLE) / (fmax(0, all.known) + LITTLE);
+    const double known = fmax(0, all.known);
+    return (asj_agreement){(all.said + USUAL * LITTLE) / (known + LITTLE), known};
 }

@@ -4,8 +4,13 @@
 
 #include "picture_look.h"
 
-/* How well the pictures agree through a geometry, of what they could: about 1 as well as possible, 0 as well as any two cells of
- * what it takes for a plane; what nothing is known of has what it is drawn to (picture_agreement.c). */
-double asj_pictures_agreement(const asj_look *look);
+typedef struct asj_agreement {
+    double share; /* of what they could: about 1 as well as possible, 0 as well as any two cells of what a geometry takes for a
+                   * plane; what nothing is known of has what it is drawn to (picture_agreement.c) */
+    double known; /* nats: what they could say */
+} asj_agreement;
+
+/* How well the pictures agree through a geometry. */
+asj_agreement asj_pictures_agreement(const asj_look *look);
 
 #endif

@@ -128,40 +128,46 @@ static asj_status put_preferred_in_front(asj_estimation *e, int32_t best, int32_
     return status;
 }
 
-/* The best one, that has not to be chance, or -1. */
-static int32_t best_that_counts(const asj_estimation *e)
+/* The best one of a kind that may not be chance; -1: there is none. */
+static int32_t best_that_counts(const asj_estimation *e, int32_t kind)
 {
-    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
-    return best >= 0 && asj_estimation_log10_nfa(e, &e->finalists[best]) <= log10(e->options->epsilon) ? best : -1;
+    const int32_t best = asj_estimation_best(e, kind);
+    return asj_estimation_counts(e, best) ? best : -1;
 }
 
-/* As long as the pictures disagree with the best one. */
-static void strike_best(asj_estimation *e)
+/* As long as the pictures disagree with the best one of a kind. */
+static void strike_best(asj_estimation *e, int32_t kind)
 {
-    for (int32_t best = best_that_counts(e); best >= 0 && !asj_pairs_stop(&e->set, NULL); best = best_that_counts(e)) {
-        asj_model *m = &e->finalists[best];
-        asj_compare_from(e, best);
+    for (int32_t n = best_that_counts(e, kind); n >= 0 && !asj_pairs_stop(&e->set, NULL); n = best_that_counts(e, kind)) {
+        asj_model *m = &e->finalists[n];
+        asj_compare_from(e, n);
         if (!asj_pictures_disagree_with_first(e, asj_estimation_log10_nfa(e, m)))
             return;
         m->evidence = m->peak = -HUGE_VAL;
     }
 }
 
+/* Whatever may be the answer (answer.c). */
+static void strike_what_disagrees(asj_estimation *e)
+{
+    for (int32_t k = 0; k < 2 && e->pictures; k++)
+        strike_best(e, k == 0 ? ASJ_GEOMETRY_AUTO : ASJ_GEOMETRY_HOMOGRAPHY);
+}
+
 asj_status asj_strike_out(asj_estimation *e)
 {
     asj_status status = ASJ_OK;
     int32_t stands = 1;
-    if (e->pictures)
-        strike_best(e);
+    strike_what_disagrees(e);
     for (int32_t round = 0; round < MOST_STRUCK && stands && status == ASJ_OK && (e->set.has_colours || e->pictures); round++) {
-        const int32_t best = best_that_counts(e);
+        const int32_t best = best_that_counts(e, ASJ_GEOMETRY_AUTO);
         if (best < 0)
             break;
         status = put_preferred_in_front(e, best, &stands);
     }
     if (status == ASJ_OK)
         strike_rivals(e);
-    if (status == ASJ_OK && e->pictures)
-        strike_best(e);
+    if (status == ASJ_OK)
+        strike_what_disagrees(e);
     return status;
 }

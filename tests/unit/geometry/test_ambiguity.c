@@ -241,6 +241,36 @@ static void test_wrong_one_alone_is_struck_out(void **state)
     }
 }
 
+/* What matches leave open counts with as many decades as the pictures' agreement is unusual. */
+static void test_agreement_is_unusual(void **state)
+{
+    static const struct {
+        double share, known, decades;
+    } cases[] = {{.9, 20, 3}, {.7, 20, 3}, {.6, 20, 1.5}, {.5, 20, 0}, {.2, 20, 0}, {.9, 14, 0}};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    const int32_t contrast = 60;
+    asj_geometry_options options;
+    asj_estimation *e = prepare(context, TILE, &options);
+    e->agreement[0] = e->agreement[1] = (asj_agreement){0.9, 20};
+    assert_true(asj_estimation_log10_agreement(e, 0) == 0); /* nobody has shown pictures */
+    for (double evidence = 5; evidence < 25; evidence += 1) {
+        e->finalists[0].evidence = evidence;
+        assert_int_equal(asj_estimation_counts(e, 0), asj_estimation_log10_nfa(e, &e->finalists[0]) <= -7);
+    }
+    show(context, e, 1, &contrast);
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++)
+        for (int32_t look = 0; look < 2; look++) {
+            e->agreement[look] = (asj_agreement){cases[k].share, cases[k].known};
+            assert_true(fabs(asj_estimation_log10_agreement(e, look) + cases[k].decades) < 1e-9);
+        }
+    for (double evidence = 5; evidence < 25; evidence += 1) {
+        e->finalists[0].evidence = evidence;
+        assert_int_equal(asj_estimation_counts(e, 0), asj_estimation_log10_nfa(e, &e->finalists[0]) <= -4);
+    }
+    assert_false(asj_estimation_counts(e, -1));
+    release(context, e);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -250,6 +280,7 @@ int main(void)
         cmocka_unit_test(test_pictures_of_like_tiles_say_nothing),
         cmocka_unit_test(test_wrong_one_in_front_is_struck_out),
         cmocka_unit_test(test_wrong_one_alone_is_struck_out),
+        cmocka_unit_test(test_agreement_is_unusual),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
