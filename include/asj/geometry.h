@@ -116,7 +116,7 @@ typedef struct asj_geometry {
     double picture_agreement;/* how well the images agree between the matches, of what they could: about 1 as well as possible, 0.6
                               * where they know nothing (bare walls, no plane), 0.3 and less where only corners are alike; 0:
                               * nobody has looked (asj_geometry_estimate(); model fundamental). src/geometry/picture_agreement.c */
-    double reserved;
+    double picture_knowledge;/* nats: what they could say at most, 15 and more where that is worth something */
 } asj_geometry;
 
 /* Estimates the two-view geometry of candidate matches.

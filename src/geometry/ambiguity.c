@@ -63,7 +63,7 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
         if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
         const double contrary = asj_compare_with(e, rival), share = asj_estimation_log10_nfa(e, rival) / to_compare(e, m);
-        const int32_t doubtful = asj_against_first(e, contrary) > DOUBT;
+        const int32_t doubtful = asj_votes_against_first(e, contrary) > DOUBT;
         if (contrary > (doubtful ? CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
             !asj_is_contradicted(e, best, n, contrary) &&
             !asj_pictures_disagree_with_other(e, rival, asj_estimation_log10_nfa(e, rival))) {

@@ -246,7 +246,9 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     const int32_t second = asj_strongest_rival(e, best, &doubt);
     if (asj_watch_end(e->set.watch) != ASJ_OK)
         return ASJ_ERROR_CANCELLED; /* rivals that nobody has looked at */
-    result->picture_agreement = asj_agreement_of_first(e, &e->finalists[best]);
+    const asj_agreement agreement = asj_agreement_of_first(e, &e->finalists[best]);
+    result->picture_agreement = agreement.share;
+    result->picture_knowledge = agreement.known;
     if (second >= 0)
         describe_rival(e, second, result);
     if (result->log10_nfa > log10(e->options->epsilon))

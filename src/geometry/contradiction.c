@@ -34,7 +34,8 @@
 #define LEAST_HELD 1e-3
 #define OF_FEW 1.5 /* pictures count so much less beside few matches (131 rooms: without, 2 more accepted, one pose wrong) */
 #define UPRIGHT_AHEAD 1.4
-#define BETTER 4.0   /* what agrees better by 1/BETTER contradicts the other one */
+#define AS_GOOD 0.1  /* of shares of agreement: smaller differences say nothing, .. */
+#define BETTER 4.0   /* .. and what agrees better by another 1/BETTER contradicts the other one */
 #define AGREEMENT 0.36
 #define MUCH (-60.0) /* log10 NFA */
 #define VERY_MUCH (-150.0)
@@ -83,28 +84,39 @@ static double contradiction(asj_estimation *e, const asj_model *second)
     return all > 0 ? against / all : 0;
 }
 
+/* How much pictures agree better with look `first` than with the other one. */
+static double better(const asj_estimation *e, int32_t first)
+{
+    return BETTER * fmax(0, e->agreement[first].share - e->agreement[1 - first].share - AS_GOOD);
+}
+
 /* How much colours and pictures speak against the second of two geometries, with these probabilities: above 1 they contradict it.
  * first_look: of the first one. contrary: how much of the matches contradicts the other one. Of two that have matched nearly the
  * same, pictures only tell which has its planes where they are. */
-static double against(const asj_estimation *e, const double *first, const double *second, int32_t first_look, double contrary)
+static double against(const asj_estimation *e, const double *first, const double *second, int32_t first_look, double contrary,
+                      double agreement)
 {
     const double colours = e->set.has_colours ? asj_colours_against(&e->set, first, second, e->vote) : 0;
     if (!e->pictures || !(contrary > CONTRARY_SEEN))
         return colours;
     const asj_look *of_first = &e->pictures->looks[first_look], *of_second = &e->pictures->looks[1 - first_look];
-    const double seen = asj_pictures_against(of_first, of_second) +
-                        BETTER * fmax(0, e->agreement[first_look].share - e->agreement[1 - first_look].share);
+    const double seen = asj_pictures_against(of_first, of_second) + agreement;
     return colours + (asj_inliers(&e->set, e->scratch.probability) < ASJ_FEW_MATCHES ? seen / OF_FEW : seen);
 }
 
 double asj_against_other(const asj_estimation *e, double contrary)
 {
-    return against(e, e->scratch.probability, e->other, 0, contrary);
+    return against(e, e->scratch.probability, e->other, 0, contrary, better(e, 0));
 }
 
 double asj_against_first(const asj_estimation *e, double contrary)
 {
-    return against(e, e->other, e->scratch.probability, 1, contrary);
+    return against(e, e->other, e->scratch.probability, 1, contrary, better(e, 1));
+}
+
+double asj_votes_against_first(const asj_estimation *e, double contrary)
+{
+    return against(e, e->other, e->scratch.probability, 1, contrary, 0);
 }
 
 /* Look 0 is of the geometry that others are compared with, 1 of the other. */
@@ -174,7 +186,9 @@ int32_t asj_pictures_disagree_with_other(asj_estimation *e, const asj_model *oth
     return e->pictures && disagrees(e, 1, log10_nfa);
 }
 
-double asj_agreement_of_first(const asj_estimation *e, const asj_model *first)
+asj_agreement asj_agreement_of_first(const asj_estimation *e, const asj_model *first)
 {
-    return e->pictures && first->kind != ASJ_GEOMETRY_FUNDAMENTAL ? fmax(LEAST_TOLD, e->agreement[0].share) : 0;
+    if (!e->pictures || first->kind == ASJ_GEOMETRY_FUNDAMENTAL)
+        return (asj_agreement){0, 0};
+    return (asj_agreement){fmax(LEAST_TOLD, e->agreement[0].share), e->agreement[0].known};
 }

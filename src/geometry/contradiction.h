@@ -19,6 +19,8 @@ double asj_compare_with(asj_estimation *e, const asj_model *other);
  * contrary: of asj_compare_with(). */
 double asj_against_other(const asj_estimation *e, double contrary);
 double asj_against_first(const asj_estimation *e, double contrary);
+/* .. without what the pictures say of each by itself. */
+double asj_votes_against_first(const asj_estimation *e, double contrary);
 
 /* Do colours, pictures or the way that is up contradict finalist `rival`, the other one, in favour of finalist `best`? */
 int32_t asj_is_contradicted(const asj_estimation *e, int32_t best, int32_t rival, double contrary);
@@ -30,8 +32,8 @@ int32_t asj_contradicts(asj_estimation *e, const asj_model *other);
 int32_t asj_pictures_disagree_with_first(const asj_estimation *e, double log10_nfa);
 int32_t asj_pictures_disagree_with_other(asj_estimation *e, const asj_model *other, double log10_nfa);
 
-/* How well the pictures agree with the first one; 0 where nobody has shown them, or it has no planes to see them through. */
-double asj_agreement_of_first(const asj_estimation *e, const asj_model *first);
+/* How well the pictures agree with the first one; 0 and 0 where nobody has shown them, or it has no planes to see them through. */
+asj_agreement asj_agreement_of_first(const asj_estimation *e, const asj_model *first);
 
 /* upright.h */
 int32_t asj_finalist_turns_over(const asj_estimation *e, int32_t number);

@@ -53,6 +53,7 @@
 #define SAME_POSE (4 * ASJ_DEGREE)   /* where one of the two is not accepted and does not say how sure it is */
 #define LEAST_APART (3 * ASJ_DEGREE) /* of two that do, no less is at odds, */
 #define SURELY_APART 6.5             /* and no less than so many standard deviations (of others up to 5.9) */
+#define OTHER_POSE (8 * ASJ_DEGREE)  /* where pictures decide */
 #define HALF_TURN 1e-6               /* 2 sin of an angle that is 180 degrees */
 
 /* Evidence of the upsampled images: */
@@ -65,6 +66,7 @@
 #define AGREES_BETTER 0.15 /* (eleven pairs of rooms with right looks and wrong ones: the right ones agree better by .17 to .54 in
                             * seven, by .02 and .07 in two, and the wrong one by .09 in one) */
 #define WORSE 0.05
+#define LEAST_KNOWN 15.0   /* nats */
 #define ENOUGH 0.5         /* one right motion of 20 has less */
 #define CONVINCING 0.595   /* what is not known is 0.6 */
 
@@ -156,21 +158,29 @@ static int32_t contradicts(const asj_geometry *open, const asj_geometry *upsampl
     return uncertainty(open) > 0 && are_at_odds(open, upsampled);
 }
 
-/* Do the pictures agree with `a` so much better that it is right where the two contradict each other? */
-static int32_t agrees_better(const asj_geometry *a, const asj_geometry *b)
+/* Pictures do not tell one motion from nearly the same one: it is their planes that agree or do not. */
+static int32_t are_others(const asj_geometry *a, const asj_geometry *b)
 {
-    return a->picture_agreement > 0 && b->picture_agreement > 0 && a->picture_agreement - b->picture_agreement > AGREES_BETTER;
+    const distance d = measure(a, b);
+    return fmax(d.rotation, d.translation) > OTHER_POSE;
 }
 
-/* Do the pictures agree so well with `a` that more evidence than `b` has is believed? */
+/* Do the pictures agree with `a` so much better that it is right, of two motions? */
+static int32_t agrees_better(const asj_geometry *a, const asj_geometry *b)
+{
+    return are_others(a, b) && fmin(a->picture_knowledge, b->picture_knowledge) > LEAST_KNOWN &&
+           a->picture_agreement - b->picture_agreement > AGREES_BETTER;
+}
+
+/* Do the pictures agree so well with `a` that more evidence than `b` has is believed, of two motions? */
 static int32_t is_convincing(const asj_geometry *a, const asj_geometry *b)
 {
-    return !(a->picture_agreement > 0) ||
+    return !are_others(a, b) || !(a->picture_agreement > 0) ||
            (a->picture_agreement > CONVINCING && a->picture_agreement > b->picture_agreement - WORSE);
 }
 
-/* Has a motion of the upsampled images so much more evidence than the best one of the images, which has rivals or is open, or do
- * the pictures agree so much better with it? */
+/* Has a motion of the upsampled images so much more evidence than the best one of the images, which has rivals or is open, or is it
+ * another one with which the pictures agree so much better? */
 static int32_t surpasses(const asj_geometry *upsampled, const asj_geometry *own)
 {
     return agrees_better(upsampled, own) ||

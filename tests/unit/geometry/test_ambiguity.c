@@ -235,7 +235,7 @@ static void test_wrong_one_alone_is_struck_out(void **state)
         e->count = 1;
         assert_int_equal(asj_strike_out(e), ASJ_OK);
         print_message("shift %.0f, contrast %d: agreement %.2f\n", cases[k].shift, cases[k].contrast,
-                      asj_agreement_of_first(e, &e->finalists[0]));
+                      asj_agreement_of_first(e, &e->finalists[0]).share);
         assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), cases[k].stays ? 0 : -1);
         release(context, e);
     }

@@ -20,6 +20,7 @@ static void make(asj_match_result *r, int32_t status, double log10_nfa, double d
     g->has_pose = 1;
     g->log10_nfa = log10_nfa;
     g->picture_agreement = agreement;
+    g->picture_knowledge = agreement > 0 ? 30 : 0;
     g->rotation[0] = g->rotation[8] = cos(angle);
     g->rotation[2] = sin(angle);
     g->rotation[6] = -sin(angle);
@@ -89,6 +90,22 @@ static void little_agreement_is_looked_at_again(void **state)
         make(&other, ASJ_GEOMETRY_ACCEPTED, -22, 0, cases[k].other);
         assert_int_equal(asj_looks_may_close(&own), cases[k].may_close);
         assert_int_equal(asj_looks_close(&own, &other), cases[k].closes);
+        make(&own, ASJ_GEOMETRY_ACCEPTED, cases[k].own_nfa, 1, cases[k].own); /* the same motion: the surer one */
+        assert_int_equal(asj_looks_close(&own, &other), 0);
+    }
+}
+
+/* Pictures that know little are not believed to agree better. */
+static void little_knowledge_decides_nothing(void **state)
+{
+    asj_match_result own, upsampled;
+    (void)state;
+    for (int32_t which = 0; which < 2; which++) {
+        make(&own, ASJ_GEOMETRY_ACCEPTED, -90, 20, .4);
+        make(&upsampled, ASJ_GEOMETRY_ACCEPTED, -40, 0, .8);
+        assert_int_equal(asj_looks_of(&own, &upsampled), ASJ_LOOKS_SETTLED);
+        (which ? &own : &upsampled)->geometry.picture_knowledge = 14;
+        assert_int_equal(asj_looks_of(&own, &upsampled), ASJ_LOOKS_DISPUTED);
     }
 }
 
@@ -98,6 +115,7 @@ int main(void)
         cmocka_unit_test(pictures_decide_between_poses),
         cmocka_unit_test(pictures_settle_what_is_ambiguous),
         cmocka_unit_test(little_agreement_is_looked_at_again),
+        cmocka_unit_test(little_knowledge_decides_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
