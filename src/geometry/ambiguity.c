@@ -66,7 +66,8 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
         const int32_t doubtful = asj_votes_against_first(e, contrary) > DOUBT;
         if (contrary > (doubtful ? CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
             !asj_is_contradicted(e, best, n, contrary) &&
-            !asj_pictures_disagree_with_other(e, rival, asj_estimation_log10_nfa(e, rival))) {
+            !(asj_estimation_log10_nfa(e, rival) > ASJ_SURE_RIVAL &&
+              asj_pictures_disagree_with_other(e, rival, asj_estimation_log10_nfa(e, rival)))) {
             second = n;
             *doubt = doubtful;
         }

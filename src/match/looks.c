@@ -270,7 +270,7 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsa
     if (a->status == ASJ_GEOMETRY_ACCEPTED)
         return accepted && alike ? compare(a, b) :
                accepted && !tells_motion(a) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
-    if (repeats(a) && !(accepted && (b->log10_nfa < OUTNUMBERS * a->log10_nfa || agrees_better(b, a))))
+    if (repeats(a) && !(accepted && b->log10_nfa < OUTNUMBERS * a->log10_nfa))
         return ASJ_LOOKS_LOST;
     return asj_looks_may_settle(own) ? look_beyond(own, b) : ASJ_LOOKS_BY_UPSAMPLED;
 }
