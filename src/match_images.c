@@ -29,13 +29,13 @@
  * up to 5.7, as descriptors want them; here the patches follow the junctions, and one is enough).
  *
  * Each of the two is tried first on half of the pixels to either side, one octave and without a geometry: where the stretch helps,
- * a quarter or more of its matches are there (two magazines at extreme angles: 42 of 113, 49 of 194), in an eighth of the time, and
- * where the images have nothing in common that is answered at once (match/related.c).
+ * a quarter or more of its matches are there (two magazines at extreme angles: 42 of 113, 49 of 194), in an eighth of the time,
+ * and where the images have nothing in common that is answered at once (match/related.c).
  *
- * Colours. Where a geometry is asked, and neither look has one that is sure and tells a motion, the detector looks at colours, too
- * (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright there are corners that only these
- * show. match/looks.c says what is believed. (Rooms 1000 to 1399: accepted 369 for 360, poses 368, of these out by
- * more than 3 degrees 1, for 359 and 2; of 252 unrelated pairs 19 for 17.)
+ * Colours. Where a geometry is asked, and neither look has one that is sure, agrees with the pictures and tells a motion, the
+ * detector looks at colours, too (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright
+ * there are corners that only these show. match/looks.c says what is believed. (Rooms 1000 to 1399: accepted 369 for 360, poses
+ * 368, of these out by more than 3 degrees 1, for 359 and 2; of 252 unrelated pairs 19 for 17.)
  *
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
  * often. So a stretched look needs ENOUGH matches, and as many more than there are. */

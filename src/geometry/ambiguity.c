@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Ambiguous: another geometry, of whatever kind, whose log evidence is at least NEARLY of the best one's or within APART of it, and
- * whose matches contradict those of the best one: CONTRARY of them, or CONTRARY_ALIKE where it has as much evidence and is another
- * motion, give another partner to a place that is matched. Things that repeat do that, shifted by a period or turned. The evidence
- * itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is matched more or less well for
- * reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries have up
- * to 1.6 times the log evidence of the best one that contradicts them, and with few matches more than that. And a rival
+ * whose matches contradict those of the best one: CONTRARY of them, or ASJ_CONTRARY_ALIKE where it has as much evidence and is
+ * another motion, give another partner to a place that is matched. Things that repeat do that, shifted by a period or turned. The
+ * evidence itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is matched more or less well
+ * for reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries
+ * have up to 1.6 times the log evidence of the best one that contradicts them, and with few matches more than that. And a rival
  * that is ASJ_SURE_RIVAL is one with SURE_SHARE of the best one's. (Of rooms 0 to 330 and 1000 to 1399 none is answered otherwise
  * without that share; of pairs of a stereo camera that looks at a chessboard one has -524 beside -103, a tile on.)
  *
- * What is contradicted (contradiction.c) is no rival. */
+ * What is contradicted (contradiction.c) is no rival, nor is what pictures disagree with, unless it is ASJ_SURE_RIVAL. */
 #include "ambiguity.h"
 #include "contradiction.h"
 #include "core/angle.h"
@@ -25,7 +25,6 @@
 #define NEARLY_OF_FEW 0.3
 #define APART_OF_FEW 13.0
 #define CONTRARY 0.4
-#define CONTRARY_ALIKE 0.15 /* of a rival with as much evidence */
 #define SIMILAR_MOTION (6 * ASJ_DEGREE)
 #define DOUBT 0.6 /* 229 pairs of rooms, two seeds: with .8 one more is accepted of 309, and its pose is wrong */
 
@@ -50,7 +49,7 @@ static double least_contradiction(const asj_model *best, const asj_model *rival,
             return CONTRARY;
     }
     const double nearness = fmin(1, fmax(0, (share - NEARLY) / (1 - NEARLY)));
-    return CONTRARY + (CONTRARY_ALIKE - CONTRARY) * nearness;
+    return CONTRARY + (ASJ_CONTRARY_ALIKE - CONTRARY) * nearness;
 }
 
 int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
@@ -62,12 +61,12 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
         const asj_model *rival = &e->finalists[n];
         if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
-        const double contrary = asj_compare_with(e, rival), share = asj_estimation_log10_nfa(e, rival) / to_compare(e, m);
+        const double contrary = asj_compare_with(e, rival), nfa = asj_estimation_log10_nfa(e, rival);
+        const double share = nfa / to_compare(e, m);
         const int32_t doubtful = asj_votes_against_first(e, contrary) > DOUBT;
-        if (contrary > (doubtful ? CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
+        if (contrary > (doubtful ? ASJ_CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
             !asj_is_contradicted(e, best, n, contrary) &&
-            !(asj_estimation_log10_nfa(e, rival) > ASJ_SURE_RIVAL &&
-              asj_pictures_disagree_with_other(e, rival, asj_estimation_log10_nfa(e, rival)))) {
+            !(nfa > ASJ_SURE_RIVAL && asj_pictures_disagree_with_other(e, nfa))) {
             second = n;
             *doubt = doubtful;
         }

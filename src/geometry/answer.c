@@ -252,7 +252,7 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     if (second >= 0)
         describe_rival(e, second, result);
     if (result->log10_nfa > log10(e->options->epsilon))
-        result->log10_nfa += asj_estimation_log10_agreement(e, 0);
+        result->log10_nfa += asj_estimation_log10_agreement(e);
     if (result->log10_nfa > log10(e->options->epsilon) || asj_pictures_disagree_with_first(e, result->log10_nfa))
         return ASJ_OK;
     result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;

@@ -143,8 +143,7 @@ void asj_compare_from(asj_estimation *e, int32_t number)
 double asj_compare_with(asj_estimation *e, const asj_model *other)
 {
     const double contrary = contradiction(e, other);
-    if (contrary > CONTRARY_SEEN)
-        look_at(e, other, e->other, 1);
+    look_at(e, other, e->other, 1);
     return contrary;
 }
 
@@ -183,9 +182,8 @@ int32_t asj_pictures_disagree_with_first(const asj_estimation *e, double log10_n
     return e->pictures && disagrees(e, 0, log10_nfa);
 }
 
-int32_t asj_pictures_disagree_with_other(asj_estimation *e, const asj_model *other, double log10_nfa)
+int32_t asj_pictures_disagree_with_other(const asj_estimation *e, double log10_nfa)
 {
-    look_at(e, other, e->other, 1);
     return e->pictures && disagrees(e, 1, log10_nfa);
 }
 

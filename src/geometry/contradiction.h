@@ -6,13 +6,14 @@
 
 #include "estimation.h"
 
+#define ASJ_CONTRARY_ALIKE 0.15 /* of its matches, what makes another motion with as much evidence a rival */
 #define ASJ_FEW_MATCHES 17.0 /* (497 rooms: with 15, 2 more have a wrong pose, by 34 and 92 degrees, and 5 a right one) */
 
 /* Finalist `number` is what others are compared with: its probabilities (scratch), and what it says of places and pictures. */
 void asj_compare_from(asj_estimation *e, int32_t number);
 
 /* How much of another geometry's matches contradicts the first one, a part of all: it gives another partner to a place that the
- * first one has matched. Its probabilities are in e->other then, and it has looked at the pictures where these decide. */
+ * first one has matched. Its probabilities are in e->other then, and it has looked at the pictures. */
 double asj_compare_with(asj_estimation *e, const asj_model *other);
 
 /* How much colours and pictures speak against the other geometry, or against the first one: above 1 they contradict it.
@@ -30,7 +31,7 @@ int32_t asj_contradicts(asj_estimation *e, const asj_model *other);
 
 /* Do the pictures disagree with the first one, or the other one, which has such an NFA, whatever else there is? 0 without them. */
 int32_t asj_pictures_disagree_with_first(const asj_estimation *e, double log10_nfa);
-int32_t asj_pictures_disagree_with_other(asj_estimation *e, const asj_model *other, double log10_nfa);
+int32_t asj_pictures_disagree_with_other(const asj_estimation *e, double log10_nfa);
 
 /* How well the pictures agree with the first one; 0 and 0 where nobody has shown them, or it has no planes to see them through. */
 asj_agreement asj_agreement_of_first(const asj_estimation *e, const asj_model *first);

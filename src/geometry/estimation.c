@@ -2,9 +2,10 @@
 /* The best finalist, and how often chance brings one: NFA = kinds that were tried x searches x exp(-evidence).
  *
  * Where that leaves it open, it counts how well the pictures agree (picture_agreement.c), since few geometries of unrelated rooms
- * have pictures that agree with them: of 114 with a log10 NFA from -1 to -130 of which pictures know something 4 have a share above
- * .6 and none above .65, with a mean of .3 and a standard deviation of .13. So chance brings a share above s, of LEAST_KNOWN nats
- * or more, once in 10^(BY_SHARE (s - UNUSUAL)), as far as that was seen: once in 10^ASJ_MOST_BY_PICTURES at most. */
+ * have pictures that agree with them: of 114 with a log10 NFA from -1 to -130 of which pictures know something 4 have a share
+ * above .6 and none above .65, with a mean of .3 and a standard deviation of .13. So chance brings a share above s, of
+ * ASJ_LEAST_KNOWN nats or more, once in 10^(BY_SHARE (s - UNUSUAL)), as far as that was seen: once in 10^ASJ_MOST_BY_PICTURES at
+ * most. */
 #include "estimation.h"
 #include "geometry_options.h"
 #include "posterior.h"
@@ -12,7 +13,6 @@
 
 #include <math.h>
 
-#define LEAST_KNOWN 15.0 /* nats */
 #define UNUSUAL 0.5
 #define BY_SHARE 15.0
 
@@ -82,8 +82,8 @@ int32_t asj_estimation_counts(const asj_estimation *e, int32_t number)
     return number >= 0 && asj_estimation_log10_nfa(e, &e->finalists[number]) <= most;
 }
 
-double asj_estimation_log10_agreement(const asj_estimation *e, int32_t look)
+double asj_estimation_log10_agreement(const asj_estimation *e)
 {
-    const asj_agreement *a = &e->agreement[look];
-    return e->pictures && a->known > LEAST_KNOWN ? -fmin(ASJ_MOST_BY_PICTURES, fmax(0, BY_SHARE * (a->share - UNUSUAL))) : 0;
+    const asj_agreement *a = &e->agreement[0];
+    return e->pictures && a->known > ASJ_LEAST_KNOWN ? -fmin(ASJ_MOST_BY_PICTURES, fmax(0, BY_SHARE * (a->share - UNUSUAL))) : 0;
 }

@@ -56,8 +56,8 @@ double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m);
 /* May chance be ruled out? Of what is hardly more than chance by itself that depends on the pictures, where there are some. */
 int32_t asj_estimation_counts(const asj_estimation *e, int32_t number);
 
-/* log10 of how often chance brings pictures that agree so well with number 0 or 1 of their looks: 0 to -ASJ_MOST_BY_PICTURES. */
+/* log10 of how often chance brings pictures that agree so well with the first of their looks: 0 to -ASJ_MOST_BY_PICTURES. */
 #define ASJ_MOST_BY_PICTURES 3.0
-double asj_estimation_log10_agreement(const asj_estimation *e, int32_t look);
+double asj_estimation_log10_agreement(const asj_estimation *e);
 
 #endif

@@ -9,7 +9,8 @@
  *     d = log (s + F)/(r + F),   k = log (s + F)/((1 + NOISE) F),   F = ASJ_LEAST_DIFFERENCE:
  *
  * what the cell says for the geometry, and what it could say at most: nothing on a bare wall. Of blocks of cells near matches,
- * whose plane is known best, the agreement is the share (sum of d)/(sum of k), drawn to USUAL where little is known. */
+ * whose plane is known best, the agreement is the share (sum of d)/(sum of k), drawn to ASJ_USUAL_AGREEMENT where that is
+ * little. */
 #include "picture_agreement.h"
 
 #include <math.h>
@@ -20,7 +21,6 @@
 #define RING 8         /* whole ones */
 #define LEAST_RING 6   /* cells to compare with */
 #define NOISE 0.3
-#define USUAL 0.6
 #define LITTLE 8.0     /* nats */
 
 /* What a cell says, and what it could. */
@@ -82,5 +82,5 @@ asj_agreement asj_pictures_agreement(const asj_look *look)
             }
         }
     const double known = fmax(0, all.known);
-    return (asj_agreement){(all.said + USUAL * LITTLE) / (known + LITTLE), known};
+    return (asj_agreement){(all.said + ASJ_USUAL_AGREEMENT * LITTLE) / (known + LITTLE), known};
 }

@@ -4,9 +4,12 @@
 
 #include "picture_look.h"
 
+#define ASJ_USUAL_AGREEMENT 0.6 /* what a share is drawn to where little is known */
+#define ASJ_LEAST_KNOWN 15.0    /* nats: less is not worth anything where shares decide */
+
 typedef struct asj_agreement {
     double share; /* of what they could: about 1 as well as possible, 0 as well as any two cells of what a geometry takes for a
-                   * plane; what nothing is known of has what it is drawn to (picture_agreement.c) */
+                   * plane; what nothing is known of has ASJ_USUAL_AGREEMENT */
     double known; /* nats: what they could say */
 } asj_agreement;
 

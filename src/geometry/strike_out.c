@@ -12,7 +12,6 @@
 
 #include <math.h>
 
-#define CONTRARY_ALIKE 0.15
 #define OVERRULED 1.2 /* what speaks against the best one, where 1 contradicts another: it has the most evidence for it. (821 of
                        * those pairs: two right ones have more than that against them, the next 1.17; of 47 wrong ones, which have
                        * more evidence than a right one that something speaks for, 36.) */
@@ -31,7 +30,7 @@ static void weigh(asj_estimation *e, int32_t best, double for_it[ASJ_MOST_MODELS
             (asj_finalist_turns_over(e, n) && !asj_finalist_turns_over(e, best)))
             continue;
         const double contrary = asj_compare_with(e, m), against = asj_against_first(e, contrary);
-        if (against > OVERRULED && !asj_pictures_disagree_with_other(e, m, nfa))
+        if (against > OVERRULED && !asj_pictures_disagree_with_other(e, nfa))
             for_it[n] = against;
     }
 }
@@ -61,7 +60,7 @@ static void strike_rivals(asj_estimation *e)
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++)
         if (n != best && n != e->focal_at && e->finalists[n].evidence > -HUGE_VAL) {
             const double contrary = asj_compare_with(e, &e->finalists[n]);
-            if (contrary > CONTRARY_ALIKE && asj_is_contradicted(e, best, n, contrary))
+            if (contrary > ASJ_CONTRARY_ALIKE && asj_is_contradicted(e, best, n, contrary))
                 e->finalists[n].evidence = e->finalists[n].peak = -HUGE_VAL;
         }
 }
@@ -150,8 +149,10 @@ static void strike_best(asj_estimation *e, int32_t kind)
 /* Whatever may be the answer (answer.c). */
 static void strike_what_disagrees(asj_estimation *e)
 {
-    for (int32_t k = 0; k < 2 && e->pictures; k++)
-        strike_best(e, k == 0 ? ASJ_GEOMETRY_AUTO : ASJ_GEOMETRY_HOMOGRAPHY);
+    if (!e->pictures)
+        return;
+    strike_best(e, ASJ_GEOMETRY_AUTO);
+    strike_best(e, ASJ_GEOMETRY_HOMOGRAPHY);
 }
 
 asj_status asj_strike_out(asj_estimation *e)

@@ -2,8 +2,8 @@
 /* Two looks at the same images, two estimates of their geometry, and one answer.
  *
  * Poses are two witnesses of one motion. Where they contradict each other, the one with which the pictures agree better by
- * AGREES_BETTER (../geometry/picture_agreement.c) is right; of others evidence decides. How often, of 1083 pairs of rooms seen from
- * far apart (wide_rooms, seeds 0 to 343, 360 to 704 and 1000 to 1399; before pictures were asked):
+ * AGREES_BETTER (../geometry/picture_agreement.c) is right; of others evidence decides. How often, of 1083 pairs of rooms seen
+ * from far apart (wide_rooms, seeds 0 to 343, 360 to 704 and 1000 to 1399; before pictures were asked):
  *   - Both accepted and at odds: one is wrong. If the upsampled images have OUTWEIGHS times the log evidence it is that of the
  *     images (3 pairs); if one of the two is upside down it is that, unless it has so much more (one pair: the upsampled images',
  *     with 1.6 times). Otherwise nothing says which, which is an ambiguous answer, with the matches that neither contradicts. Two
@@ -35,15 +35,20 @@
  *     any motion in the images, 22 fewer in the upsampled ones.)
  *   - The images' is accepted, and the upsampled ones have rivals: the images' is the answer (34 pairs, all within 3.4 degrees).
  *
- * A third witness are the images' colours (asj_looks_close()), where there is no motion yet, or none that is SURELY one, and no
- * rival that is ASJ_SURE_RIVAL. What they accept is the answer where the images have chance or too little; where it has
- * SURPASSES times the log evidence and SURELY (rooms 1000 to 1711: of 53 accepted with a log10 NFA above -30 13, all of which
- * are right then, and one was out by 90 degrees before); and where it is one of the images' rivals, or a motion that the images
- * allow. Nothing that is upside down. */
+ * More evidence for a motion that is far from the other one (OTHER_POSE) counts only where pictures are no reason against it
+ * (CONVINCING), and of motions that are nearly the same pictures do not tell one from the other: it is the planes that agree or
+ * not.
+ *
+ * A third witness are the images' colours (asj_looks_close()), where there is no motion yet, or none that is SURELY one and with
+ * which the pictures agree by ENOUGH, and no rival that is ASJ_SURE_RIVAL. What they accept is the answer where the images have
+ * chance or too little; where it has SURPASSES times the log evidence and SURELY (rooms 1000 to 1711: of 53 accepted with a log10
+ * NFA above -30 13, all of which are right then, and one was out by 90 degrees before); and where it is one of the images' rivals,
+ * or a motion that the images allow. Nothing that is upside down. */
 #include "looks.h"
 #include "core/angle.h"
 #include "geometry/ambiguity.h"
 #include "geometry/geometry_options.h"
+#include "geometry/picture_agreement.h"
 #include "geometry/small_matrix.h"
 
 #include <math.h>
@@ -66,9 +71,8 @@
 #define AGREES_BETTER 0.15 /* (eleven pairs of rooms with right looks and wrong ones: the right ones agree better by .17 to .54 in
                             * seven, by .02 and .07 in two, and the wrong one by .09 in one) */
 #define WORSE 0.05
-#define LEAST_KNOWN 15.0   /* nats */
 #define ENOUGH 0.5         /* one right motion of 20 has less */
-#define CONVINCING 0.595   /* what is not known is 0.6 */
+#define CONVINCING (ASJ_USUAL_AGREEMENT - 0.005) /* nothing known is no reason against */
 
 /* How far two poses are apart: rad, and with their covariances in standard deviations along that way. */
 typedef struct distance {
@@ -158,7 +162,7 @@ static int32_t contradicts(const asj_geometry *open, const asj_geometry *upsampl
     return uncertainty(open) > 0 && are_at_odds(open, upsampled);
 }
 
-/* Pictures do not tell one motion from nearly the same one: it is their planes that agree or do not. */
+/* Are two motions so far from each other that pictures tell one from the other? */
 static int32_t are_others(const asj_geometry *a, const asj_geometry *b)
 {
     const distance d = measure(a, b);
@@ -168,7 +172,7 @@ static int32_t are_others(const asj_geometry *a, const asj_geometry *b)
 /* Do the pictures agree with `a` so much better that it is right, of two motions? */
 static int32_t agrees_better(const asj_geometry *a, const asj_geometry *b)
 {
-    return are_others(a, b) && fmin(a->picture_knowledge, b->picture_knowledge) > LEAST_KNOWN &&
+    return are_others(a, b) && fmin(a->picture_knowledge, b->picture_knowledge) > ASJ_LEAST_KNOWN &&
            a->picture_agreement - b->picture_agreement > AGREES_BETTER;
 }
 
