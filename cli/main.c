@@ -75,6 +75,15 @@ static int is_file(const char *name)
     return file != NULL || strchr(name, '.') != NULL;
 }
 
+/* Which command has this option, which stands before any; NULL: none has. */
+static const char *command_of(const char *option)
+{
+    const size_t dashes = option[1] == '-' ? 2 : 1, length = dashes == 1 ? 1 : strcspn(option + dashes, "=");
+    if (cli_detect_has_option(option + dashes, length))
+        return "detect";
+    return cli_match_has_option(option + dashes, length) ? "match" : NULL;
+}
+
 /* With what was probably meant. */
 static int say_unknown(int argc, char **argv)
 {
@@ -82,9 +91,12 @@ static int say_unknown(int argc, char **argv)
     for (size_t i = 0; i < COMMAND_COUNT; i++)
         if (cli_spelling_is_close(cli_spelling_distance(name, strlen(name), commands[i].name), strlen(name)))
             return cli_usage_error(NULL, "there is no command '%s'; did you mean: asj-cli %s", name, commands[i].name);
+    const char *owner = *name == '-' ? command_of(name) : NULL;
+    if (owner)
+        return cli_usage_error(NULL, "there is no option '%s' before the command; did you mean: asj-cli %s %s%s", name, owner,
+                               name, argc > 2 ? " ..." : "");
     if (*name == '-')
-        return cli_usage_error(NULL, "there is no option '%s' before the command; did you mean: asj-cli detect %s%s", name, name,
-                               argc > 2 ? " ..." : "");
+        return cli_usage_error(NULL, "there is no option '%s'", name);
     if (is_file(name))
         return cli_usage_error(NULL, "there is no command '%s'; did you mean: asj-cli detect %s%s", name, name,
                                argc > 2 ? " ..." : "");

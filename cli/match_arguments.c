@@ -97,7 +97,8 @@ static const cli_option preset_options[] = {
     {PRESET, 0, "preset", "match|paper",
      "start from these values of the options below, wherever this stands: our recommendation for matching (the default), or the "
      "paper's way"},
-    {DETECT_PRESET, 0, "detect-preset", "match|default|paper", "the same for the detector alone; default: as 'asj-cli detect'"},
+    {DETECT_PRESET, 0, "detect-preset", "match|default|paper",
+     "the same for the detector alone; preset default is that of 'asj-cli detect'"},
     {MATCH_PRESET, 0, "match-preset", "match|paper", "the same for the matcher alone"},
 };
 

@@ -92,8 +92,8 @@ static int check_detector(const cli_match_arguments *arguments)
     if (!known[0] || !known[1])
         return CLI_SUCCESS;
     if (arguments->detect_settings.count > 0)
-        return cli_usage_error("match", "%s changes nothing: the junctions of both images come from files",
-                               arguments->detect_settings.list[0].key);
+        return cli_usage_error("match", "--%s changes nothing: the junctions of both images come from files",
+                               arguments->detect_settings.list[0].name);
     if (arguments->detect_preset >= 0)
         return cli_usage_error("match", "--detect-preset changes nothing: the junctions of both images come from files");
     return CLI_SUCCESS;

@@ -69,13 +69,13 @@ static void warn_of_swap(cli_session *session, const cli_match_arguments *argume
              name, 2 - v);
 }
 
-static int read_features(cli_session *session, cli_match_input *input, const char *junctions)
+static int read_features(cli_session *session, cli_match_input *input, const char *junctions, int v)
 {
     char message[CLI_MESSAGE_SIZE] = "";
     asj_features_info info;
     if (junctions)
-        return cli_usage_error("match", "%s changes nothing: %s is a file of features, which has its junctions", junctions,
-                               input->name);
+        return cli_usage_error("match", "--junctions%d %s changes nothing: %s is a file of features, which has its junctions",
+                               v + 1, junctions, input->name);
     const asj_status status = asj_features_read(session->context, input->name, &input->features, message, sizeof message);
     if (status != ASJ_OK)
         return status == ASJ_ERROR_CANCELLED ? CLI_FAILED : cli_session_fail(session, input->name, message, status);
@@ -92,7 +92,7 @@ int cli_match_input_read(cli_session *session, const cli_match_arguments *argume
     double start = cli_now_ms();
     input->name = arguments->images[v];
     if (asj_features_probe(input->name)) {
-        const int result = read_features(session, input, path);
+        const int result = read_features(session, input, path, v);
         input->read_ms = cli_now_ms() - start;
         return result;
     }

@@ -152,7 +152,7 @@ static int has_name(const getopt_tables *tables, const char *name, size_t length
     for (const struct option *option = tables->long_options; option->name; option++)
         if (strlen(option->name) == length && memcmp(option->name, name, length) == 0)
             return 1;
-    return 0;
+    return length == 1 && *name && *name != ':' && strchr(tables->short_options, *name) != NULL;
 }
 
 int cli_has_option(const cli_syntax *syntax, const char *name, size_t length)
@@ -217,8 +217,9 @@ static int take_option(const cli_syntax *syntax, const getopt_tables *tables, si
     const cli_group *group = NULL;
     if (number >= tables->option_count) {
         size_t t;
-        const char *key = find_key(syntax, number - tables->option_count, &t);
-        return syntax->tables[t].take(syntax->tables[t].target, key, text);
+        const size_t row = number - tables->option_count;
+        const char *key = find_key(syntax, row, &t);
+        return syntax->tables[t].take(syntax->tables[t].target, key, tables->names[row], text);
     }
     const cli_option *option = find_option(syntax, number, &group);
     return group->take(group->target, option->id, text);

@@ -29,7 +29,8 @@ typedef struct cli_table {
     size_t (*count)(void);
     const asj_option_info *(*row)(size_t index);
     asj_status (*value)(int32_t preset, const char *key, char *text, size_t text_size); /* value of an option in a preset */
-    int (*take)(void *target, const char *key, const char *text); /* the key may be a former one */
+    /* the key may be a former one; `name` is what it is called on the command line */
+    int (*take)(void *target, const char *key, const char *name, const char *text);
     void *target;
 } cli_table;
 
@@ -62,7 +63,7 @@ void cli_option_name(const cli_syntax *syntax, size_t table, const char *key, ch
  * CLI_FAILED (no memory). May be called once. */
 int cli_parse(const cli_syntax *syntax, int argc, char **argv, int *first_operand);
 
-/* Whether there is an option of exactly that name, `length` characters without the dashes. */
+/* Whether there is an option of exactly that name, `length` characters without the dashes, or of that letter. */
 int cli_has_option(const cli_syntax *syntax, const char *name, size_t length);
 
 /* The words of a choice: index of `text` in the NULL-terminated `words`, or -1. */

@@ -2,10 +2,10 @@
 /* Options kept in order until the preset is known, then set. */
 #include "settings.h"
 #include "message.h"
-#include "parse.h"
 
 #include <asj/match.h>
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,12 +25,13 @@ void cli_settings_free(cli_settings *settings)
     settings->count = 0;
 }
 
-int cli_settings_take(void *target, const char *key, const char *text)
+int cli_settings_take(void *target, const char *key, const char *name, const char *text)
 {
     cli_settings *settings = target;
     cli_setting *setting = &settings->list[settings->count++];
     setting->key = key;
     setting->text = text;
+    snprintf(setting->name, sizeof setting->name, "%s", name);
     return CLI_SUCCESS;
 }
 
@@ -76,13 +77,20 @@ asj_status cli_set_match_option(void *options, const char *key, const char *text
     return asj_match_options_set(options, key, text, message, message_size);
 }
 
+/* The library's sentence begins with its key, which two tables may have: here with what was typed. */
+static int refuse(const char *command, const cli_setting *setting, const char *message)
+{
+    const char *end = strchr(message, ':');
+    return end ? cli_usage_error(command, "--%s%s", setting->name, end) : cli_usage_error(command, "%s", message);
+}
+
 int cli_settings_apply(const cli_settings *settings, const char *command, int quiet, void *options,
                        asj_status (*set)(void *options, const char *key, const char *text, char *message, size_t message_size))
 {
     char message[256];
     for (size_t i = 0; i < settings->count; i++) {
         if (set(options, settings->list[i].key, settings->list[i].text, message, sizeof message) != ASJ_OK)
-            return cli_usage_error(command, "%s", message);
+            return refuse(command, &settings->list[i], message);
         if (*message && !quiet)
             cli_note("asj-cli %s: warning: %s", command, message);
     }

@@ -3,11 +3,14 @@
 #ifndef ASJ_CLI_SETTINGS_H
 #define ASJ_CLI_SETTINGS_H
 
+#include "parse.h"
+
 #include <asj/options.h>
 
 typedef struct cli_setting {
     const char *key;
     const char *text;
+    char name[CLI_NAME_SIZE]; /* "match-max-move": the key as it is called on the command line */
 } cli_setting;
 
 typedef struct cli_settings {
@@ -20,7 +23,7 @@ int cli_settings_create(cli_settings *settings, int argc);
 void cli_settings_free(cli_settings *settings);
 
 /* The `take` of a cli_table. */
-int cli_settings_take(void *settings, const char *key, const char *text);
+int cli_settings_take(void *settings, const char *key, const char *name, const char *text);
 
 /* Is this option among them? */
 int cli_settings_have(const cli_settings *settings, const char *key);

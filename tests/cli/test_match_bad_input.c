@@ -63,8 +63,8 @@ static const struct {
     {{"match", "--out-dir", ".", "first.png", "first.png"}, "no option '--out-dir': it is one of asj-cli detect\n"},
     {{"match", "--line", "first.png", "first.png"}, "'--line' could be --lines or --line-ends\n"},
     {{"match", "--camera=1,1,0,0", "first.png", "first.png"}, "'--camera=1,1,0,0' could be --camera1 or --camera2\n"},
-    {{"match", "--ratio", "one", "first.png", "first.png"}, "ratio: 'one' is not a number"},
-    {{"match", "--ratio", "0.5", "first.png", "first.png"}, "ratio: 0.5 is outside"},
+    {{"match", "--ratio", "one", "first.png", "first.png"}, "--ratio: 'one' is not a number"},
+    {{"match", "--ratio", "0.5", "first.png", "first.png"}, "--ratio: 0.5 is outside"},
     {{"match", "--geometry", "affine", "first.png", "first.png"}, "--geometry: 'affine' is not auto"},
     {{"match", "--geometry", "essential", "first.png", "first.png"}, "--geometry essential needs --camera1 and --camera2"},
     {{"match", "--focal", "600", "first.png", "first.png"}, "a camera or a focal length changes nothing without --geometry"},
@@ -83,11 +83,12 @@ static const struct {
     {{"match", "--geometry", "auto", "--camera1", "600,600,320", "first.png", "first.png"}, "is not FX,FY,CX,CY"},
     {{"match", "--geometry", "auto", "--camera2", "-600,600,320,240", "first.png", "first.png"}, "is not FX,FY,CX,CY"},
     {{"match", "--geometry", "auto", "--camera2", "600,600,320,240,1", "first.png", "first.png"}, "is not FX,FY,CX,CY"},
-    {{"match", "--epsilon", "-1", "first.png", "first.png"}, "epsilon: -1 is outside"},
-    {{"match", "--match-max-move", "21", "first.png", "first.png"}, "max_move: 21 is outside"},
+    {{"match", "--epsilon", "-1", "first.png", "first.png"}, "--epsilon: -1 is outside"},
+    {{"match", "--match-max-move", "21", "first.png", "first.png"}, "asj-cli match: --match-max-move: 21 is outside 0.5 .. 20"},
+    {{"match", "--max-move", "21", "first.png", "first.png"}, "asj-cli match: --max-move: 21 is outside 0.5 .. 10"},
     {{"match", "--match-ratio", "2", "first.png", "first.png"}, "no option '--match-ratio'"},
-    {{"match", "--patch-size", "18", "first.png", "first.png"}, "patch_size"},
-    {{"match", "--descriptor", "orb", "first.png", "first.png"}, "descriptor"},
+    {{"match", "--patch-size", "18", "first.png", "first.png"}, "--patch-size: 18"},
+    {{"match", "--descriptor", "orb", "first.png", "first.png"}, "--descriptor: 'orb'"},
     {{"match", "--preset", "best", "first.png", "first.png"}, "--preset: 'best'"},
     {{"match", "--match-preset", "best", "first.png", "first.png"}, "--match-preset: 'best'"},
     {{"match", "--detect-preset", "best", "first.png", "first.png"}, "--detect-preset: 'best'"},
@@ -315,10 +316,10 @@ static void bad_features_are_refused(void **state)
     expect_refusal(run_with_pipe("good.asjf"), "asj-cli: pipe.asjf: ", "takes them from a file");
     const outcome *result = run_cli("match", "-o", "never.csv", "--junctions1", "good.asj", "good.asjf", "second.png", NULL);
     expect_code(result, 2);
-    expect_in(result, result->err, "good.asj changes nothing: good.asjf is a file of features");
+    expect_in(result, result->err, "--junctions1 good.asj changes nothing: good.asjf is a file of features");
     static const char *const useless[][3] = {{"--mask1", "nowhere.png", "--mask1 changes nothing: the junctions of that image"},
                                              {"--region2", "0,0,5,5", "--region2 changes nothing: the junctions of that image"},
-                                             {"--epsilon", "5", "epsilon changes nothing: the junctions of both images"},
+                                             {"--epsilon", "5", "--epsilon changes nothing: the junctions of both images"},
                                              {"--detect-preset", "paper", "--detect-preset changes nothing"}};
     for (size_t i = 0; i < sizeof useless / sizeof useless[0]; i++) {
         result = run_cli("match", "-o", "never.csv", useless[i][0], useless[i][1], "good.asjf", "good.asjf", NULL);
