@@ -42,6 +42,7 @@ typedef struct cli_session {
     cli_kernel_cache cache;
     int errors; /* said by the library's log while it made the context */
     int warned_of_gray; /* cli_warn_of_gray(): once */
+    int warned_of_more; /* pictures behind the first: once */
     char failure[2 * CLI_MESSAGE_SIZE]; /* what cli_session_fail() said last */
 } cli_session;
 

@@ -73,6 +73,16 @@ static int has_white(const asj_image *image, double white)
     return image->format == ASJ_FORMAT_GRAY_FLOAT || (image->format == ASJ_FORMAT_GRAY16 && brightest(image) <= white);
 }
 
+/* Pages and frames are asked for by nobody, so nobody may notice that they were left out. */
+static void warn_of_more(cli_session *session, const cli_common *common, const char *path)
+{
+    if (common->quiet || session->warned_of_more)
+        return;
+    cli_progress_clear(&session->progress);
+    cli_note("asj-cli %s: warning: %s holds several pictures, of which the first is read", common->command, path);
+    session->warned_of_more = 1;
+}
+
 int cli_read_image(cli_session *session, const cli_common *common, const char *path, asj_image_file **file)
 {
     char message[CLI_MESSAGE_SIZE] = "";
@@ -86,6 +96,8 @@ int cli_read_image(cli_session *session, const cli_common *common, const char *p
         return cli_session_fail(session, path, result ? result : message, status);
     if (common->white > 0 && has_white(&(*file)->image, common->white))
         (*file)->image.white = (float)common->white;
+    if ((*file)->has_more)
+        warn_of_more(session, common, path);
     return CLI_SUCCESS;
 }
 

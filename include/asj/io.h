@@ -37,12 +37,13 @@ typedef struct asj_image_file {
     int32_t orientation; /* the EXIF orientation (1 .. 8) that was applied: the view is upright. 1 = none */
     int32_t focal_source;/* ASJ_EXIF_FOCAL_... */
     float focal_length;  /* px of `image`, from EXIF data; 0 = not known */
-    int32_t reserved;
+    int32_t has_more;    /* 1 = the file holds further pictures, which are not read: pages of a TIFF, frames of a PNG */
 } asj_image_file;
 
 /* Reads an image: PNG (1 to 16 bits, palette, alpha, interlaced) and PNM (PBM, PGM, PPM, PAM, PFM) always; JPEG, TIFF, WebP, JPEG
  * 2000, HEIF, AVIF, BMP, Sun raster and Radiance HDR where the library was built with their readers (asj_io_image_formats()). The
- * content of the file decides which reader it gets, not its name. max_pixels 0 = ASJ_IO_DEFAULT_MAX_PIXELS.
+ * content of the file decides which reader it gets, not its name. max_pixels 0 = ASJ_IO_DEFAULT_MAX_PIXELS. Of a file with several
+ * pictures the first is read (has_more).
  *
  * Upright: the EXIF orientation of PNG, JPEG, TIFF and WebP is applied, so that coordinates are those of the picture as viewers
  * show it; HEIF and AVIF are turned and cropped as their own properties say. Transparency is ignored: the stored colours count.

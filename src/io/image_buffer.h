@@ -14,6 +14,7 @@ typedef struct asj_image_buffer {
     int32_t width, height;
     int32_t format;        /* ASJ_FORMAT_... */
     int32_t orientation;   /* EXIF: how `pixels` are stored */
+    int32_t has_more;      /* asj_image_file */
     asj_lens lens;         /* EXIF */
 } asj_image_buffer;
 

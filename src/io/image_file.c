@@ -79,6 +79,7 @@ static asj_status wrap(const asj_image_buffer *buffer, asj_image_file **file, co
     owned->file.image.width = buffer->width;
     owned->file.image.height = buffer->height;
     owned->file.orientation = buffer->orientation;
+    owned->file.has_more = buffer->has_more;
     owned->file.focal_length = (float)asj_lens_focal(&buffer->lens, buffer->width, buffer->height, &owned->file.focal_source);
     *file = &owned->file;
     return ASJ_OK;

@@ -10,6 +10,7 @@
  * there can be clobbered; what must be freed hangs on it. */
 #include "image_buffer.h"
 
+#include "bytes.h"
 #include "exif.h"
 
 #include <png.h>
@@ -97,6 +98,7 @@ static void skip_descriptions(png_structp png)
 {
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, (png_const_bytep)"eXIf", 1);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_ALWAYS, (png_const_bytep)"acTL", 1);
     png_set_chunk_malloc_max(png, 1 << 20);
 }
 
@@ -110,6 +112,14 @@ static void open_png(png_reader *reader)
     skip_descriptions(reader->png);
     png_set_crc_action(reader->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_user_limits(reader->png, 0x7fffffff, 0x7fffffff); /* the declared size is checked below, with a better message */
+}
+
+/* Animated PNG: acTL, before the pixels, begins with the number of frames. */
+static int has_more(const png_reader *reader)
+{
+    png_unknown_chunkp chunks = NULL;
+    const int count = png_get_unknown_chunks(reader->png, reader->info, &chunks);
+    return count > 0 && chunks[0].size >= 4 && asj_big32(chunks[0].data) > 1;
 }
 
 /* Everything before the pixels; asks libpng for one of the forms above. */
@@ -137,6 +147,7 @@ static void read_header(png_reader *reader)
         if (*(const unsigned char *)&one)
             png_set_swap(png);
     }
+    buffer->has_more = has_more(reader);
     reader->colour16 = depth == 16 && (type & PNG_COLOR_MASK_COLOR);
     buffer->format = depth == 16 ? ASJ_FORMAT_GRAY16 : type & PNG_COLOR_MASK_COLOR ? ASJ_FORMAT_RGB8 : ASJ_FORMAT_GRAY8;
     buffer->width = (int32_t)png_get_image_width(png, info);

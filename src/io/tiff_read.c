@@ -350,6 +350,21 @@ static void read_lens(TIFF *tiff, asj_lens *lens)
                        height};
 }
 
+/* Is there a page behind the first? Smaller copies and masks of one are none (TIFF 6.0, NewSubfileType). */
+static int has_more(TIFF *tiff)
+{
+    enum { MOST = 32 }; /* of these that are passed over */
+    if (!TIFFSetDirectory(tiff, 0))
+        return 0;
+    for (int i = 0; i < MOST && TIFFReadDirectory(tiff); i++) {
+        uint32_t kind = 0;
+        TIFFGetField(tiff, TIFFTAG_SUBFILETYPE, &kind);
+        if (!(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)))
+            return 1;
+    }
+    return 0;
+}
+
 asj_status asj_tiff_decode(const asj_input *input, const asj_image_probe *probe, uint64_t max_pixels, asj_image_buffer *buffer,
                            const asj_message *message)
 {
@@ -362,8 +377,10 @@ asj_status asj_tiff_decode(const asj_input *input, const asj_image_probe *probe,
     if (!reader.tiff)
         return asj_decoder_fail(message, "damaged TIFF", reader.cause);
     status = decode(&reader, probe, max_pixels, buffer, message);
-    if (status == ASJ_OK)
+    if (status == ASJ_OK) {
         read_lens(reader.tiff, &buffer->lens);
+        buffer->has_more = has_more(reader.tiff);
+    }
     TIFFClose(reader.tiff);
     free(reader.raw);
     return status;

@@ -593,6 +593,39 @@ static void deep_images_have_no_colours(void **state)
     expect_in(result, result->err, warning);
 }
 
+/* The scene as an animated PNG of two frames: acTL behind IHDR. */
+static void write_animated_scene(const char *path)
+{
+    static const char control[] = "\x00\x00\x00\x08" "acTL" "\x00\x00\x00\x02\x00\x00\x00\x00\xf3\x8d\x93\x70";
+    const size_t added = sizeof control - 1, at = 8 + 25;
+    size_t size;
+    char *scene = read_bytes("scene.png", &size), *bytes = malloc(size + added);
+    assert_non_null(scene);
+    assert_non_null(bytes);
+    memcpy(bytes, scene, at);
+    memcpy(bytes + at, control, added);
+    memcpy(bytes + at + added, scene + at, size - at);
+    write_bytes(path, bytes, size + added);
+    free(bytes);
+    free(scene);
+}
+
+static void pictures_behind_the_first_are_told_once(void **state)
+{
+    static const char warning[] = "warning: moving.png holds several pictures, of which the first is read\n";
+    (void)state;
+    write_animated_scene("moving.png");
+    write_animated_scene("again.png");
+    const outcome *result = run_cli("detect", "-d", "moving", "scene.png", "moving.png", "again.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, warning);
+    assert_null(strstr(strstr(result->err, warning) + 1, "warning"));
+    assert_null(strstr(run_cli("detect", "-q", "moving.png", NULL)->err, "warning"));
+    result = run_cli("match", "scene.png", "moving.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, warning);
+}
+
 /* One image has its hint at once; many have one line for all of them, at the end. */
 static void many_images_have_one_line_of_hints(void **state)
 {
@@ -636,6 +669,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(white_can_be_told),
         cmocka_unit_test(white_of_floats_can_be_told),
         cmocka_unit_test(deep_images_have_no_colours),
+        cmocka_unit_test(pictures_behind_the_first_are_told_once),
         cmocka_unit_test(many_images_have_one_line_of_hints),
         cmocka_unit_test(a_camera_of_another_image_is_refused), cmocka_unit_test(lines_come_each_once),
         cmocka_unit_test(an_option_reaches_the_detector),

@@ -286,6 +286,38 @@ static void tiff_orientation_is_applied_once(void **state)
         }
 }
 
+/* A second directory of the tags of the first, which says in one more what it is: a page, a copy in another size, a mask. */
+static void pages_behind_the_first_are_told(void **state)
+{
+    static const unsigned kinds[] = {0, 1, 2, 4, 5};
+    static test_bytes tiff, whole, next;
+    (void)state;
+    for (int variant = 0; variant < 10; variant++) {
+        const int big_endian = variant & 1;
+        const unsigned kind = kinds[variant / 2];
+        make_tiff(&tiff, big_endian, 8, 1);
+        whole = tiff;
+        asj_image_file *file = read_image("pages.tif", &whole);
+        assert_int_equal(file->has_more, 0);
+        asj_image_file_free(&file);
+        append(&whole, "", whole.size & 1); /* directories begin at even places */
+        const uint32_t second = (uint32_t)whole.size;
+        append16(&whole, big_endian, 11);
+        append16(&whole, big_endian, 254);
+        append16(&whole, big_endian, 4);
+        append32(&whole, big_endian, 1);
+        append32(&whole, big_endian, kind);
+        append(&whole, tiff.bytes + 10, 120 + 4);
+        next.size = 0;
+        append32(&next, big_endian, second);
+        memcpy(whole.bytes + 10 + 120, next.bytes, 4);
+        file = read_image("pages.tif", &whole);
+        assert_int_equal(file->has_more, kind == 0 || kind == 2);
+        assert_int_equal(((const uint8_t *)file->image.data)[7], picture_sample(2, 1, 0, 8));
+        asj_image_file_free(&file);
+    }
+}
+
 /* Damage of any kind may or may not be noticed, but never crashes and never speaks. */
 static void any_byte_changed(void **state)
 {
@@ -574,7 +606,8 @@ int main(void)
         cmocka_unit_test(jpeg_with_too_few_or_too_many_data),
         cmocka_unit_test(damage_is_seen_without_descriptors),
     };
-    const struct CMUnitTest tiff[] = {cmocka_unit_test(tiff_orientation_is_applied_once)};
+    const struct CMUnitTest tiff[] = {cmocka_unit_test(tiff_orientation_is_applied_once),
+                                     cmocka_unit_test(pages_behind_the_first_are_told)};
     const struct CMUnitTest changed[] = {cmocka_unit_test(any_byte_changed)};
     const struct CMUnitTest of_webp[] = {cmocka_unit_test(webp_pixels)};
     const struct CMUnitTest of_jpeg2000[] = {cmocka_unit_test(jpeg2000_pixels)};

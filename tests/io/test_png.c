@@ -109,6 +109,30 @@ static void insert_exif(test_bytes *png, const test_bytes *exif, int at_end)
     *png = copy;
 }
 
+/* acTL before the pixels, with the number of frames; its content may be too short. */
+static void frames_behind_the_first_are_told(void **state)
+{
+    static const struct {
+        unsigned char content[8];
+        size_t size;
+        int has_more;
+    } given[] = {{{0, 0, 0, 2}, 8, 1}, {{0, 0, 0, 1}, 8, 0}, {{1, 0, 0, 0}, 8, 1}, {{0, 0, 2}, 3, 0}, {{0}, 0, 0}};
+    static test_bytes png, whole;
+    (void)state;
+    for (size_t i = 0; i < sizeof given / sizeof given[0]; i++) {
+        const size_t at = 8 + 25; /* behind IHDR */
+        make_png(&png, &kinds[0], 7, 5);
+        whole.size = 0;
+        append(&whole, png.bytes, at);
+        append_chunk(&whole, "acTL", given[i].content, given[i].size);
+        append(&whole, png.bytes + at, png.size - at);
+        asj_image_file *file = read_image(write_bytes("frames.png", whole.bytes, whole.size));
+        assert_int_equal(file->has_more, given[i].has_more);
+        check_pixels(file, &kinds[0], 7, 5);
+        asj_image_file_free(&file);
+    }
+}
+
 static void every_orientation_is_turned_upright(void **state)
 {
     static test_bytes png, exif;
@@ -207,7 +231,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_gives_its_pixels), cmocka_unit_test(every_orientation_is_turned_upright),
         cmocka_unit_test(damaged_exif_means_upright),  cmocka_unit_test(what_is_written_reads_back),
-        cmocka_unit_test(bad_views_are_not_written),
+        cmocka_unit_test(bad_views_are_not_written),   cmocka_unit_test(frames_behind_the_first_are_told),
     };
     return cmocka_run_group_tests_name("io: PNG", tests, make_folder, remove_folder);
 }
