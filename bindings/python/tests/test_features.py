@@ -177,6 +177,9 @@ def test_options() -> None:
     assert asj.detect(square(), preset="default", minimum_length=30).options["minimum_length"] == "30"
     assert len(asj.detect(square(), preset="default", minimum_length=500)) == 0
     assert asj.detect(square(), isotropic_radii=(5, 9), strip_test=False).options["isotropic_radii"] == "5,9"
+    for radii in ((5.9, 9), ("small",)):
+        with pytest.raises(asj.OptionError, match="isotropic_radii: '.*' is not a set of radii"):
+            asj.detect(square(), isotropic_radii=radii)
     with pytest.raises(asj.OptionError, match="did you mean minimum_length"):
         asj.detect(square(), minimum_lenght=3)
     with pytest.raises(asj.OptionError, match=r"'ratio': it is one of asj.match\(\)"):

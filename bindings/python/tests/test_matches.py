@@ -84,6 +84,16 @@ def test_stretched_images(scene: Scene) -> None:
         asj.match_images(scene, second, stretch="much")
 
 
+def test_images_of_another_white(scene: Scene) -> None:
+    second = panels(shift=(6, 4))
+    deep, floats = ([one.astype(kind) for one in (scene, second)] for kind in (np.uint16, np.float64))
+    with pytest.raises(asj.ImageError, match="white=255"):
+        asj.match_images(*floats, stretch=1)
+    plain = asj.match_images(scene, second, stretch=1).matches
+    for images in (deep, floats):
+        assert np.array_equal(asj.match_images(*images, stretch=1, white=255).matches, plain)
+
+
 def test_upsampled_by_themselves(scene: Scene) -> None:
     second = panels(shift=(6, 4))
     plain, found = asj.match_images(scene, second, stretch=1), asj.match_images(scene, second)

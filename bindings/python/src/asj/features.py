@@ -238,6 +238,7 @@ def detect(
 
     preset   "match" for features that are to be matched: weaker junctions too, since the matcher tells the false ones. "default"
              for junctions that are to be looked at; "paper" for the published method
+    white    the value that means white, where it is not the type's: 1023 of a 10-bit camera in uint16, 255 of floats up to that
     mask     HxW of bool or uint8: no junction where it is 0
     region   x, y, width, height: only junctions in this part of the image; branches may leave it
     options  those of the detector by name (:func:`asj.detect_options` lists them), for instance minimum_length=30

@@ -233,7 +233,7 @@ def match(
 def match_images(
     image1: ArrayLike, image2: ArrayLike, *, stretch: float | tuple[float, float] | str = "auto", geometry: str = "none",
     camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, focal_sd: float = 0.0,
-    preset: str = "default", context: Context | None = None, **options: object,
+    preset: str = "default", context: Context | None = None, white: float = 0.0, **options: object,
 ) -> Matches:  # fmt: skip
     """Detects in both images and matches them, upsampled or stretched before; everything comes in pixels of the images as they are.
 
@@ -243,6 +243,7 @@ def match_images(
                which :attr:`Matches.upsampled` tells; images of more than 2 megapixels also halved, and upsampled from there; where no
                sure geometry is found also with colours (`look_at_colours`), which :attr:`Matches.coloured` tells; and where nothing comes
                of it at (1, 3) and (3, 1), then also upsampled; :attr:`Matches.stretch` tells which it was
+    white      what means white in both images, as for :func:`asj.detect`
     preset     "default", or "paper": the published method, detector and matcher; "auto" is as they are then
     options    those of the matcher; the others as for :func:`asj.match`
 
@@ -253,7 +254,7 @@ def match_images(
     >>> np.median(found.xy1 - found.xy2, axis=0).round(1).tolist()
     [30.0, 20.0]
     """
-    views = (images.view(image1, 0.0), images.view(image2, 0.0))
+    views = (images.view(image1, white), images.view(image2, white))
     if isinstance(stretch, str) and stretch != "auto":
         raise ValueError(f"stretch {stretch!r} is no factor, no pair of factors, and not 'auto'")
     try:
@@ -264,7 +265,7 @@ def match_images(
     if not isinstance(stretch, str) and x == 0 and y == 0:
         raise ValueError("a stretch of 0")
     factors = ffi.new("asj_stretch *", {"x": float(x), "y": float(y)})
-    record = MATCHER.fill(preset, options, ("stretch", *_KEYWORDS))
+    record = MATCHER.fill(preset, options, ("stretch", "white", *_KEYWORDS))
     cameras = (camera1, camera1 if camera2 is None else camera2)
     fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in views], find_focal, focal_sd)
     detector = DETECTOR.fill("paper" if preset == "paper" else "match", {})

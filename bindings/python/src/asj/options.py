@@ -104,7 +104,7 @@ def _written(value: object) -> str:
     if isinstance(value, (bytes, bytearray)):
         raise OptionError(f"{value!r} is no value of an option: text is str here")
     if isinstance(value, Iterable):
-        return ",".join(str(int(radius)) for radius in value)
+        return ",".join(str(radius) for radius in value)  # what is no whole number the library refuses by name
     if isinstance(value, (float, np.floating)):
         return repr(float(value))
     return str(value)
