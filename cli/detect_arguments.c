@@ -216,6 +216,21 @@ static int check_places(const cli_detect_arguments *arguments)
     return CLI_SUCCESS;
 }
 
+/* Options that say how something is written which nobody has asked for. */
+static int check_useful(const cli_detect_arguments *arguments)
+{
+    if ((arguments->format || arguments->whole) && arguments->plot && !arguments->output && !arguments->out_dir)
+        return cli_usage_error("detect", "--%s changes nothing: with --plot alone no junctions are written (--output - does)",
+                               arguments->format ? "format" : "whole");
+    if (arguments->whole && strcmp(cli_detect_extension(arguments), "asj") != 0)
+        return cli_usage_error("detect", "--whole changes nothing: it is for asj, where junctions are taken apart else");
+    if (arguments->keep_folders && !arguments->out_dir)
+        return cli_usage_error("detect", "--keep-folders changes nothing without --out-dir");
+    if (arguments->skip_existing && !arguments->out_dir)
+        return cli_usage_error("detect", "--skip-existing changes nothing without --out-dir");
+    return CLI_SUCCESS;
+}
+
 static int check(cli_detect_arguments *arguments)
 {
     if (arguments->images.count == 0 && arguments->files_from)
@@ -226,12 +241,8 @@ static int check(cli_detect_arguments *arguments)
         return cli_usage_error("detect", "--output and --out-dir exclude each other");
     if (arguments->out_dir && !*arguments->out_dir)
         return cli_usage_error("detect", "--out-dir: an empty path names no folder (. is this one)");
-    if (arguments->format && arguments->plot && !arguments->output && !arguments->out_dir)
-        return cli_usage_error("detect", "--format changes nothing: with --plot alone no junctions are written (--output - does)");
-    if (arguments->keep_folders && !arguments->out_dir)
-        return cli_usage_error("detect", "--keep-folders changes nothing without --out-dir");
-    if (arguments->skip_existing && !arguments->out_dir)
-        return cli_usage_error("detect", "--skip-existing changes nothing without --out-dir");
+    if (check_useful(arguments) != CLI_SUCCESS)
+        return CLI_USAGE;
     if (check_places(arguments) != CLI_SUCCESS)
         return CLI_USAGE;
     for (size_t i = 0; i < arguments->images.count; i++)
