@@ -168,9 +168,10 @@ static int check_geometry(const cli_match_arguments *arguments)
     const int first = arguments->cameras[0].fx > 0, second = arguments->cameras[1].fx > 0;
     if ((first || second || arguments->focal_from != CLI_FOCAL_AUTO) && arguments->geometry == ASJ_GEOMETRY_NONE)
         return cli_usage_error("match", "a camera or a focal length changes nothing without --geometry");
-    if (arguments->focal_sd > 0 && (arguments->geometry == ASJ_GEOMETRY_NONE || arguments->geometry > ASJ_GEOMETRY_ESSENTIAL ||
-                                    arguments->focal_from == CLI_FOCAL_ESTIMATE))
+    if (arguments->focal_sd > 0 && (arguments->geometry == ASJ_GEOMETRY_NONE || arguments->geometry > ASJ_GEOMETRY_ESSENTIAL))
         return cli_usage_error("match", "--focal-sd changes nothing without --geometry auto or essential and focal lengths");
+    if (arguments->focal_sd > 0 && arguments->focal_from == CLI_FOCAL_ESTIMATE)
+        return cli_usage_error("match", "--focal-sd changes nothing with --focal estimate, which takes none as known");
     if (arguments->style.epipolar && arguments->geometry == ASJ_GEOMETRY_NONE)
         return cli_usage_error("match", "--plot-epipolar changes nothing without --geometry");
     if (arguments->focal_from == CLI_FOCAL_ESTIMATE && (first || second))
