@@ -95,6 +95,29 @@ static void little_agreement_is_looked_at_again(void **state)
     }
 }
 
+/* Of one motion, what colours know better and from much more evidence is the answer. */
+static void surer_poses_of_colours_are_taken(void **state)
+{
+    static const struct {
+        double own_degrees, own_sd, other_sd, other_nfa;
+        int32_t closes;
+    } cases[] = {{1, 1, 0.5, -26, 1}, {1, 0.5, 1, -26, 0}, {1, 1, 0.5, -24, 0}, {2.9, 0.4, 0.3, -26, 1}, {3.1, 0.4, 0.3, -26, 0}};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result own, other;
+        make(&own, ASJ_GEOMETRY_ACCEPTED, -20, cases[k].own_degrees, .7);
+        make(&other, ASJ_GEOMETRY_ACCEPTED, cases[k].other_nfa, 0, .7);
+        for (int i = 0; i < 6; i++) {
+            own.geometry.covariance[7 * i] *= cases[k].own_sd * cases[k].own_sd;
+            other.geometry.covariance[7 * i] *= cases[k].other_sd * cases[k].other_sd;
+        }
+        assert_int_equal(asj_looks_close(&own, &other), cases[k].closes);
+        own.geometry.has_pose = 0;
+        own.geometry.only_turns = 1;
+        assert_int_equal(asj_looks_close(&own, &other), 0);
+    }
+}
+
 /* Pictures that know little are not believed to agree better. */
 static void little_knowledge_decides_nothing(void **state)
 {
@@ -115,6 +138,7 @@ int main(void)
         cmocka_unit_test(pictures_decide_between_poses),
         cmocka_unit_test(pictures_settle_what_is_ambiguous),
         cmocka_unit_test(little_agreement_is_looked_at_again),
+        cmocka_unit_test(surer_poses_of_colours_are_taken),
         cmocka_unit_test(little_knowledge_decides_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

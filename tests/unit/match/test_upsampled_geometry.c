@@ -647,12 +647,12 @@ static void another_look_answers_what_is_open(void **state)
         double rival_log10_nfa, degrees, rival_degrees, log10_nfa; /* the last: of the other look, where the images have -30 */
         int32_t may, closes;
     } cases[] = {{ASJ_GEOMETRY_CHANCE, 0, 0, 30, 30, -10, 1, 1},       {ASJ_GEOMETRY_ACCEPTED, 1, 0, 1, 30, -37, 1, 0},
-                 {ASJ_GEOMETRY_ACCEPTED, 1, 0, 30, 30, -38, 1, 1},     {ASJ_GEOMETRY_TOO_FEW, 0, 0, 30, 30, -10, 1, 1},
-                 {ASJ_GEOMETRY_ACCEPTED, 0, 0, 1, 30, -10, 1, 1},      {ASJ_GEOMETRY_ACCEPTED, 0, 0, 30, 30, -10, 1, 0},
-                 {ASJ_GEOMETRY_ACCEPTED, 0, 0, 30, 30, -50, 1, 1},     {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 1, 30, -10, 1, 1},
-                 {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 1, -10, 1, 1},   {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 30, -30, 1, 0},
-                 {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 30, -50, 1, 1},  {ASJ_GEOMETRY_AMBIGUOUS, 0, -101, 1, 30, -300, 0, 0},
-                 {ASJ_GEOMETRY_NOT_ASKED, 0, 0, 1, 1, -50, 0, 0}};
+                 {ASJ_GEOMETRY_ACCEPTED, 1, 0, 1, 30, -38, 1, 1},      {ASJ_GEOMETRY_ACCEPTED, 1, 0, 30, 30, -38, 1, 1},
+                 {ASJ_GEOMETRY_TOO_FEW, 0, 0, 30, 30, -10, 1, 1},      {ASJ_GEOMETRY_ACCEPTED, 0, 0, 1, 30, -10, 1, 1},
+                 {ASJ_GEOMETRY_ACCEPTED, 0, 0, 30, 30, -10, 1, 0},     {ASJ_GEOMETRY_ACCEPTED, 0, 0, 30, 30, -50, 1, 1},
+                 {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 1, 30, -10, 1, 1},   {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 1, -10, 1, 1},
+                 {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 30, -30, 1, 0},  {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 30, -50, 1, 1},
+                 {ASJ_GEOMETRY_AMBIGUOUS, 0, -101, 1, 30, -300, 0, 0}, {ASJ_GEOMETRY_NOT_ASKED, 0, 0, 1, 1, -50, 0, 0}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_match_result *own = match(context, 0, 1), *coloured = match(context, 1, 1);
