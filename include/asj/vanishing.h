@@ -36,13 +36,15 @@ typedef struct asj_vanishing_point {
                                * where point[2] is nearly 0 */
     double direction[3];      /* of the edges in camera coordinates (x right, y down, z forward), of length 1, sign unknown; zero
                                * without a focal length */
-    double log10_nfa;         /* of the vote: how many directions with so many branches chance brings in such an image */
+    double log10_nfa;         /* how many points with so many branches chance brings in such an image: anywhere, or, where there is
+                               * a focal length and another direction, on the line that these leave it */
     uint32_t branch_count;    /* that agree; those of one line count once */
     uint32_t reserved;
 } asj_vanishing_point;
 
-/* Up to three directions; with a focal length, given or found, they are at right angles to each other, else at least 8 degrees
- * apart in a camera whose focal length is the longer side of the image. The surest first. */
+/* Up to three directions; with a focal length, given or found, they are at right angles to each other and found together, few
+ * branches of one with many of the others; else at least 8 degrees apart in a camera whose focal length is the longer side of the
+ * image. The surest first. */
 typedef struct asj_vanishing_points {
     int32_t count;
     int32_t focal_source;     /* ASJ_FOCAL_... */
@@ -56,8 +58,8 @@ typedef struct asj_vanishing_points {
  * junctions   may be NULL when count is 0; only read
  * result      written whole when ASJ_OK is returned
  *
- * src/geometry/vanishing.c says how. Safe in several threads with a context each; the same result every time. The caller is asked
- * every 50 ms whether to go on, as ASJ_STAGE_DECOMPOSE: 300 000 junctions took .2 s.
+ * src/geometry/vanishing.c and vanishing_frame.c say how. Safe in several threads with a context each; the same result every time.
+ * The caller is asked every 50 ms whether to go on, as ASJ_STAGE_DECOMPOSE: 300 000 junctions took .2 s.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that cannot be (asj_junction_check())
  * ASJ_ERROR_LIMIT      more than 2^28 junctions

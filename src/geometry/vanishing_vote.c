@@ -26,7 +26,6 @@
 
 #define LEAST_LENGTH 10.0            /* px */
 #define ACROSS 0.4                   /* px that the end of a branch is out, across, when its uncertainty is not known */
-#define LONGEST 60
 #define SAME_LINE 2.0                /* px, and .. */
 #define SAME_ANGLE (1.5 * ASJ_DEGREE) /* .. branches nearer than that are on one line */
 #define ROUNDS 4
@@ -174,8 +173,13 @@ int32_t asj_line_votes_for(const asj_vote_line *one, const double v[3], int32_t 
     return !one->taken && one->sd <= tau[level] && sine(one, v) <= sin(tau[level]);
 }
 
-/* Natural logarithm of sum over i >= k of C(n, i) p^i (1 - p)^(n - i), for all k, from the last term on. */
-static void tails(int32_t n, double p, double *tail)
+double asj_vote_chance(int32_t level)
+{
+    return 2 * tau[level] / ASJ_PI;
+}
+
+/* From the last term on. */
+void asj_binomial_tails(int32_t n, double p, double *tail)
 {
     double sum = -HUGE_VAL, term = n * log(p);
     for (int32_t k = n; k >= 0; k--) {
@@ -199,26 +203,47 @@ static void count_members(asj_vote_search *s)
         for (int32_t k = 0; k < s->count; k++)
             s->members[level] += !s->lines[k].taken && s->lines[k].sd <= tau[level];
         if (s->members[level] >= 2)
-            tails(s->members[level] - 2, 2 * tau[level] / ASJ_PI, s->tail + level * (ASJ_VOTE_LINES + 1));
+            asj_binomial_tails(s->members[level] - 2, asj_vote_chance(level), s->tail + level * (ASJ_VOTE_LINES + 1));
     }
 }
 
-/* Votes for the point at all levels; the surest. Most lines are far from the point, and their sine need not be known: its square is
- * above that of the largest tolerance by more than rounding makes of it. */
-asj_vote asj_judge_point(const asj_vote_search *s, const double v[3])
+/* Most lines are far from a point, and their sine need not be known: its square is above that of the largest tolerance by more than
+ * rounding makes of it. */
+static double least_sine(const asj_vote_line *one, double points[][3], int32_t count)
 {
     const double widest = sin(tau[ASJ_VOTE_LEVELS - 1]), far2 = 1.000001 * widest * widest;
-    asj_vote best = {{v[0], v[1], v[2]}, HUGE_VAL, 0, 0};
-    int32_t votes[ASJ_VOTE_LEVELS] = {0};
+    double least = 1;
+    for (int32_t n = 0; n < count; n++) {
+        const double *v = points[n];
+        const double dx = v[0] - v[2] * one->mx, dy = v[1] - v[2] * one->my, at = asj_dot3(one->l, v);
+        if (!(at * at > far2 * (dx * dx + dy * dy)))
+            least = fmin(least, sine(one, v));
+    }
+    return least;
+}
+
+void asj_count_votes(const asj_vote_search *s, double points[][3], int32_t count, int32_t votes[ASJ_VOTE_LEVELS])
+{
+    double sines[ASJ_VOTE_LEVELS];
+    for (int32_t level = 0; level < ASJ_VOTE_LEVELS; level++) {
+        votes[level] = 0;
+        sines[level] = sin(tau[level]);
+    }
     for (int32_t k = 0; k < s->count; k++) {
         const asj_vote_line *one = &s->lines[k];
-        const double dx = v[0] - v[2] * one->mx, dy = v[1] - v[2] * one->my, at = asj_dot3(one->l, v);
-        if (at * at > far2 * (dx * dx + dy * dy) || one->taken)
-            continue;
-        const double sin_of = sine(one, v);
-        for (int32_t level = 0; level < ASJ_VOTE_LEVELS; level++)
-            votes[level] += one->sd <= tau[level] && sin_of <= sin(tau[level]);
+        const double least = one->taken ? 1 : least_sine(one, points, count);
+        for (int32_t level = 0; level < ASJ_VOTE_LEVELS && least < 1; level++)
+            votes[level] += one->sd <= tau[level] && least <= sines[level];
     }
+}
+
+/* Votes for the point at all levels; the surest. */
+asj_vote asj_judge_point(const asj_vote_search *s, const double v[3])
+{
+    asj_vote best = {{v[0], v[1], v[2]}, HUGE_VAL, 0, 0};
+    double points[1][3] = {{v[0], v[1], v[2]}};
+    int32_t votes[ASJ_VOTE_LEVELS];
+    asj_count_votes(s, points, 1, votes);
     for (int32_t level = 0; level < ASJ_VOTE_LEVELS; level++) {
         const double nfa = log_nfa(s, level, votes[level]);
         if (nfa < best.log_nfa) {
@@ -254,20 +279,32 @@ static asj_vote refine(const asj_vote_search *s, asj_vote at)
     return at;
 }
 
-static int32_t find_best(asj_vote_search *s, asj_vote *best)
+/* The longest lines that are free. */
+static int32_t find_longest(const asj_vote_search *s, int32_t index[ASJ_VOTE_LONGEST])
 {
-    int32_t index[LONGEST], count = 0;
-    best->log_nfa = HUGE_VAL;
-    for (int32_t k = 0; k < s->count && count < LONGEST; k++)
+    int32_t count = 0;
+    for (int32_t k = 0; k < s->count && count < ASJ_VOTE_LONGEST; k++)
         if (!s->lines[k].taken)
             index[count++] = k;
+    return count;
+}
+
+/* The votes for where two lines meet; log_nfa HUGE_VAL where they are one. */
+static asj_vote judge_pair(const asj_vote_search *s, int32_t i, int32_t k)
+{
+    asj_vote none = {{0, 0, 0}, HUGE_VAL, 0, 0};
+    asj_cross3(s->lines[i].l, s->lines[k].l, none.v);
+    return asj_normalise3(none.v) ? asj_judge_point(s, none.v) : none;
+}
+
+static int32_t find_best(asj_vote_search *s, asj_vote *best)
+{
+    int32_t index[ASJ_VOTE_LONGEST];
+    const int32_t count = find_longest(s, index);
+    best->log_nfa = HUGE_VAL;
     for (int32_t i = 0; i < count && !stops(s->watch); i++)
         for (int32_t k = 0; k < i; k++) {
-            double v[3];
-            asj_cross3(s->lines[index[i]].l, s->lines[index[k]].l, v);
-            if (!asj_normalise3(v))
-                continue;
-            const asj_vote next = asj_judge_point(s, v);
+            const asj_vote next = judge_pair(s, index[i], index[k]);
             if (next.log_nfa < best->log_nfa)
                 *best = next;
         }
@@ -275,6 +312,50 @@ static int32_t find_best(asj_vote_search *s, asj_vote *best)
         return 0;
     *best = refine(s, *best);
     return 1;
+}
+
+int32_t asj_vote_pairs(asj_vote_search *s, asj_vote *points)
+{
+    int32_t index[ASJ_VOTE_LONGEST], found = 0;
+    const int32_t count = find_longest(s, index);
+    count_members(s);
+    for (int32_t i = 0; i < count && !stops(s->watch); i++)
+        for (int32_t k = 0; k < i; k++) {
+            points[found] = judge_pair(s, index[i], index[k]);
+            found += points[found].log_nfa < HUGE_VAL;
+        }
+    return found;
+}
+
+static int by_nfa(const void *left, const void *right)
+{
+    const asj_vote *p = left, *q = right;
+    return (p->log_nfa > q->log_nfa) - (p->log_nfa < q->log_nfa);
+}
+
+void asj_direction_of(const double v[3], double focal, double direction[3])
+{
+    direction[0] = v[0];
+    direction[1] = v[1];
+    direction[2] = v[2] * focal;
+    asj_normalise3(direction);
+}
+
+int32_t asj_vote_distinct(asj_vote *points, int32_t count, double focal, double apart_by, int32_t most)
+{
+    int32_t kept = 0;
+    asj_sort(points, (size_t)count, sizeof *points, by_nfa);
+    for (int32_t k = 0; k < count && kept < most; k++) {
+        double d[3], e[3], nearest = 0;
+        asj_direction_of(points[k].v, focal, d);
+        for (int32_t i = 0; i < kept; i++) {
+            asj_direction_of(points[i].v, focal, e);
+            nearest = fmax(nearest, fabs(asj_dot3(d, e)));
+        }
+        if (nearest <= cos(apart_by))
+            points[kept++] = points[k];
+    }
+    return kept;
 }
 
 /* Up to ASJ_VOTE_POINTS points, each without the voters of those before. All lines are free again then. */

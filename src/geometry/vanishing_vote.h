@@ -12,6 +12,8 @@
 #define ASJ_VOTE_LEVELS 3    /* tolerances */
 #define ASJ_VOTE_POINTS 6    /* looked at before right angles */
 #define ASJ_VOTE_LINES 300   /* that take part, at most */
+#define ASJ_VOTE_LONGEST 60  /* that define points */
+#define ASJ_VOTE_PAIRS (ASJ_VOTE_LONGEST * (ASJ_VOTE_LONGEST - 1) / 2)
 
 /* A straight edge, px. `pixel`: how many px wide the pixels are in which it was seen; what it is out grows with them. */
 typedef struct asj_straight_edge {
@@ -54,10 +56,30 @@ int32_t asj_vote_lines(const asj_straight_edge *edges, size_t count, double shor
 /* Does the branch vote for v at that level? */
 int32_t asj_line_votes_for(const asj_vote_line *one, const double v[3], int32_t level);
 
+/* How likely a line votes for a point by chance, at that level. */
+double asj_vote_chance(int32_t level);
+
+/* How many lines vote for any of `count` points, at each level. */
+void asj_count_votes(const asj_vote_search *s, double points[][3], int32_t count, int32_t votes[ASJ_VOTE_LEVELS]);
+
+/* Natural logarithm of sum over i >= k of C(n, i) p^i (1 - p)^(n - i), for all k up to n. */
+void asj_binomial_tails(int32_t n, double p, double *tail);
+
 /* The votes that v has, at the level where they are least likely by chance. */
 asj_vote asj_judge_point(const asj_vote_search *s, const double v[3]);
 
 /* The points with a log NFA of at most `most`, the surest first; room for ASJ_VOTE_POINTS. Returns how many, fewer when stopped. */
 int32_t asj_vote_points(asj_vote_search *s, double most, asj_vote *points);
+
+/* The points of all pairs of the ASJ_VOTE_LONGEST longest lines that a third one votes for, in any order; room for ASJ_VOTE_PAIRS.
+ * Returns how many. */
+int32_t asj_vote_pairs(asj_vote_search *s, asj_vote *points);
+
+/* The direction of a point of rays times `focal`, of length 1. */
+void asj_direction_of(const double v[3], double focal, double direction[3]);
+
+/* The surest first; of those nearer than `apart` (rad), with that focal length, the surest stays, and `most` in all. Returns how
+ * many stay. */
+int32_t asj_vote_distinct(asj_vote *points, int32_t count, double focal, double apart, int32_t most);
 
 #endif
