@@ -66,12 +66,8 @@ static asj_status write_junctions(run *r, const char *image, const char *path, c
                                    .segments = segments};
     if (format == CLI_FILE_FEATURES)
         return write_features(r, path, pixels, detection, message);
-    if (r->arguments->vanishing_points) {
-        const asj_status status = find_directions(r, pixels, detection, message);
-        if (status != ASJ_OK)
-            return status;
+    if (r->arguments->vanishing_points)
         report.vanishing_points = &r->points;
-    }
     if (format == CLI_FILE_JSON_LINES)
         return cli_json_lines_add(&r->lines, &report, message, CLI_MESSAGE_SIZE);
     return asj_junctions_write(path, format, &report, message, CLI_MESSAGE_SIZE);
@@ -83,6 +79,11 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     const cli_detect_arguments *arguments = r->arguments;
     char message[CLI_MESSAGE_SIZE] = "";
     int result = CLI_SUCCESS;
+    if (arguments->vanishing_points) {
+        const asj_status status = find_directions(r, pixels, detection, message);
+        if (status != ASJ_OK)
+            return status == ASJ_ERROR_CANCELLED ? CLI_FAILED : cli_session_fail(&r->session, image, message, status);
+    }
     if (output->junctions || r->lines.output) {
         asj_status status = write_junctions(r, image, output->junctions, pixels, detection, segments, message);
         if (status == ASJ_ERROR_CANCELLED)
@@ -93,8 +94,9 @@ static int write_results(run *r, const char *image, const cli_output *output, co
             result = cli_session_fail(&r->session, output->junctions ? output->junctions : image, message, status);
     }
     if (output->plot && !cli_interrupted()) {
-        asj_status status = cli_plot_write(output->plot, arguments->plot_format, pixels, detection, segments, &arguments->style,
-                                           message, sizeof message);
+        const cli_plot_scene scene = {pixels, detection, segments, arguments->vanishing_points ? &r->points : NULL};
+        asj_status status = cli_plot_write(output->plot, arguments->plot_format, &scene, &arguments->style, message,
+                                           sizeof message);
         if (status == ASJ_ERROR_CANCELLED)
             return CLI_FAILED;
         if (status != ASJ_OK)

@@ -69,7 +69,8 @@ static const cli_option region_options[] = {
 };
 
 static const cli_option direction_options[] = {
-    {VANISHING_POINTS, 0, "vanishing-points", NULL, "json: where parallel edges of the scene meet, up to three directions"},
+    {VANISHING_POINTS, 0, "vanishing-points", NULL,
+     "json: where parallel edges of the scene meet, up to three directions; a plot shows which edge has which"},
     {CAMERA, 0, "camera", "FX,FY,CX,CY",
      "focal lengths and principal point, px; pixel centres are at integers (COLMAP's CX and CY less 0.5). Then the directions are "
      "at right angles. Default: the focal length is found where two directions determine it"},
@@ -78,9 +79,9 @@ static const cli_option direction_options[] = {
 static const cli_option plot_options[] = {
     {PLOT, 'p', "plot", "FILE",
      "draw the junctions: FILE.png, FILE.svg or FILE.pdf; with --out-dir only png, svg or pdf: photo.jpg gives DIR/photo.plot.png"},
-    {PLOT_COLOR, 0, "plot-color", "nfa|branch|edge",
+    {PLOT_COLOR, 0, "plot-color", "nfa|branch|edge|direction",
      "branches, or lines, coloured by how sure they are (the default), or branches by their number, or edges between two junctions "
-     "by how sure they are"},
+     "by how sure they are; direction: by the vanishing point that they run to (the default with --vanishing-points)"},
     {PLOT_BACKGROUND, 0, "plot-background", "photo|color|white",
      "over the pale photograph in grey (the default) or in its colours, or on white"},
     {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are enlarged"},
@@ -141,7 +142,7 @@ static int take_directions(void *target, int id, const char *text)
 
 static int take_plot(void *target, int id, const char *text)
 {
-    static const char *const colors[] = {"nfa", "branch", "edge", NULL};
+    static const char *const colors[] = {"nfa", "branch", "edge", "direction", NULL};
     cli_detect_arguments *arguments = target;
     if (id != PLOT)
         arguments->plot_option = plot_options[id - PLOT].name;
@@ -151,7 +152,8 @@ static int take_plot(void *target, int id, const char *text)
         break;
     case PLOT_COLOR:
         if ((arguments->style.color = cli_find_word(colors, text)) < 0)
-            return cli_usage_error("detect", "--plot-color: '%s' is not nfa, branch or edge", text);
+            return cli_usage_error("detect", "--plot-color: '%s' is not nfa, branch, edge or direction", text);
+        arguments->has_color = 1;
         break;
     case PLOT_BACKGROUND:
         return cli_plot_take_background("detect", text, &arguments->style.background);
@@ -196,8 +198,23 @@ static int check_lines(const cli_detect_arguments *arguments)
     const int32_t format = cli_detect_file_format(arguments);
     if (arguments->lines && format != ASJ_FILE_CSV && !is_json(format))
         return cli_usage_error("detect", "--lines go into CSV or JSON: --format csv, or --output FILE.json");
-    if (arguments->lines && arguments->style.color != CLI_PLOT_COLOR_NFA)
-        return cli_usage_error("detect", "--plot-color: with --lines it takes nfa alone");
+    if (arguments->lines && arguments->style.color != CLI_PLOT_COLOR_NFA && arguments->style.color != CLI_PLOT_COLOR_DIRECTION)
+        return cli_usage_error("detect", "--plot-color: with --lines it takes nfa or direction");
+    return CLI_SUCCESS;
+}
+
+static int check_directions(cli_detect_arguments *arguments)
+{
+    const int wanted = arguments->vanishing_points;
+    if (!wanted && arguments->style.color == CLI_PLOT_COLOR_DIRECTION)
+        return cli_usage_error("detect", "--plot-color direction takes --vanishing-points");
+    if (!wanted && arguments->camera.fx > 0)
+        return cli_usage_error("detect", "a camera changes nothing without --vanishing-points");
+    if (wanted && !arguments->has_color)
+        arguments->style.color = CLI_PLOT_COLOR_DIRECTION;
+    const int shown = arguments->plot && arguments->style.color == CLI_PLOT_COLOR_DIRECTION;
+    if (wanted && !shown && !is_json(cli_detect_file_format(arguments)))
+        return cli_usage_error("detect", "--vanishing-points go into JSON, or a plot: --format json, or --output FILE.json");
     return CLI_SUCCESS;
 }
 
@@ -253,10 +270,8 @@ static int check(cli_detect_arguments *arguments)
         result = cli_check_ending("detect", "junctions", arguments->output, arguments->format, formats);
     if (result == CLI_SUCCESS)
         result = check_lines(arguments);
-    if (result == CLI_SUCCESS && arguments->vanishing_points && !is_json(cli_detect_file_format(arguments)))
-        return cli_usage_error("detect", "--vanishing-points go into JSON: --format json, or --output FILE.json");
-    if (result == CLI_SUCCESS && arguments->camera.fx > 0 && !arguments->vanishing_points)
-        return cli_usage_error("detect", "a camera changes nothing without --vanishing-points");
+    if (result == CLI_SUCCESS)
+        result = check_directions(arguments);
     return result == CLI_SUCCESS ? check_plot(arguments) : result;
 }
 

@@ -24,12 +24,13 @@ typedef struct cli_detect_arguments {
     const char *format;    /* "asj", "json", "jsonl", "csv", "asjf"; NULL = by the name of `output` */
     int whole;
     int lines;             /* straight edges: CSV and plot have them in place of the branches, JSON beside them */
-    int vanishing_points;  /* into JSON */
+    int vanishing_points;  /* into JSON and the plot */
     asj_camera camera;     /* fx = 0: not known */
     cli_region region;
     const char *plot;      /* a file, or with out_dir a format; NULL = none */
     int32_t plot_format;   /* CLI_PLOT_... */
     cli_plot_style style;
+    int has_color;         /* --plot-color was given */
     const char *plot_option; /* the name of one that says how the plot looks; NULL = none was given */
     const char *files_from; /* NULL = none */
     int skip_existing;     /* images that have their results in out_dir are left out */

@@ -11,14 +11,12 @@ static asj_status refuse(char *message, size_t message_size)
     return ASJ_ERROR_UNSUPPORTED;
 }
 
-asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,
-                          const asj_segment_list *segments, const cli_plot_style *style, char *message, size_t message_size)
+asj_status cli_plot_write(const char *path, int32_t format, const cli_plot_scene *scene, const cli_plot_style *style,
+                          char *message, size_t message_size)
 {
     (void)path;
     (void)format;
-    (void)image;
-    (void)detection;
-    (void)segments;
+    (void)scene;
     (void)style;
     return refuse(message, message_size);
 }

@@ -165,7 +165,7 @@ static void directions_are_written_on_request(void **state)
     assert_null(strstr(result->err, "direction"));
     result = run_cli("detect", "--vanishing-points", "scene.png", NULL);
     expect_code(result, 2);
-    expect_in(result, result->err, "--vanishing-points go into JSON");
+    expect_in(result, result->err, "--vanishing-points go into JSON, or a plot");
     result = run_cli("detect", "-f", "json", "--camera", "600,600,159.5,119.5", "scene.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "a camera changes nothing without --vanishing-points");

@@ -103,7 +103,44 @@ static void lines_take_the_place_of_branches(void **state)
     expect_text("lines.svg", "<?xml", "<g id=\"junction-4\"", "line-5");
     const outcome *result = run_cli("detect", "--lines", "--plot", "x.png", "--plot-color", "edge", "scene.png", NULL);
     expect_code(result, 2);
-    expect_in(result, result->err, "--plot-color: with --lines it takes nfa alone");
+    expect_in(result, result->err, "--plot-color: with --lines it takes nfa or direction");
+}
+
+/* Squares in rows and columns: what is upright has one direction, what is level the other. */
+static void directions_have_colors(void **state)
+{
+    enum { WIDE = 320, HIGH = 240, SIDE = 40, STEP = 70 };
+    static unsigned char pixels[WIDE * HIGH];
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, WIDE, HIGH, 0, 0};
+    (void)state;
+    for (int y = 0; y < HIGH; y++)
+        for (int x = 0; x < WIDE; x++)
+            pixels[y * WIDE + x] = x % STEP >= 20 && x % STEP < 20 + SIDE && y % STEP >= 20 && y % STEP < 20 + SIDE ? 200 : 80;
+    assert_int_equal(asj_png_write("squares.png", &image, NULL, 0), ASJ_OK);
+    const outcome *result = run_cli("detect", "--vanishing-points", "--plot", "d.png", "--plot-background", "white", "--plot-scale",
+                                    "4", "squares.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "2 directions -> d.png");
+    asj_image_file *plot = read_plot("d.png");
+    unsigned char level[3], upright[3];
+    memcpy(level, plot_pixel(plot, 4 * 40, 4 * 20), 3);   /* the middle of the first square's upper side, .. */
+    memcpy(upright, plot_pixel(plot, 4 * 20, 4 * 40), 3); /* .. and of its left one */
+    assert_true(is_colored(level) && is_colored(upright));
+    assert_true(abs(level[0] - upright[0]) > 100);
+    assert_memory_equal(plot_pixel(plot, 4 * 110, 4 * 90), level, 3);
+    assert_memory_equal(plot_pixel(plot, 4 * 90, 4 * 110), upright, 3);
+    asj_image_file_free(&plot);
+    expect_code(run_cli("detect", "-q", "--lines", "--vanishing-points", "--plot", "d.svg", "squares.png", NULL), 0);
+    expect_text("d.svg", "<?xml", ", direction 2</title>", "branch-1");
+    expect_code(run_cli("detect", "-q", "--vanishing-points", "--plot", "d.svg", "--plot-color", "nfa", "-o", "d.json",
+                        "squares.png", NULL), 0);
+    expect_text("d.svg", "<?xml", "branch 2: ", "direction");
+    result = run_cli("detect", "--vanishing-points", "--plot", "d.svg", "--plot-color", "nfa", "squares.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--vanishing-points go into JSON, or a plot");
+    result = run_cli("detect", "--plot", "d.svg", "--plot-color", "direction", "squares.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--plot-color direction takes --vanishing-points");
 }
 
 static void the_photograph_is_pale_and_gray(void **state)
@@ -262,6 +299,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(junctions_are_drawn_where_they_are),
         cmocka_unit_test(lines_take_the_place_of_branches),
+        cmocka_unit_test(directions_have_colors),
         cmocka_unit_test(the_photograph_is_pale_and_gray),
         cmocka_unit_test(the_photograph_keeps_its_colors_on_request),
         cmocka_unit_test(small_images_are_upsampled),
