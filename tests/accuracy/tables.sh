@@ -117,20 +117,21 @@ part rooms-fresh "$tool/match_room" --rooms --first 101 --last 140
 part rooms-finer "$tool/match_room" --rooms --first-octave -1 --last 48
 
 # Two views far apart.
-part far-as-they-are "$tool/wide_rooms" --poses --first 1000 --last 1399
-part far "$tool/wide_rooms" --poses --stretch 0,0 --first 1000 --last 1399
-part far-no-colours "$tool/wide_rooms" --poses --stretch 0,0 --colours no --first 1000 --last 1399
-part far-fresh "$tool/wide_rooms" --poses --stretch 0,0 --first 6200 --last 6299
-part far-judged "$tool/wide_rooms" --poses --stretch 0,0 --first 5900 --last 6099
-part near "$tool/wide_rooms" --poses --stretch 0,0 --near --first 3000 --last 3149
-part turned "$tool/wide_rooms" --turned --first 0 --last 99
-part turned-focal "$tool/wide_rooms" --turned --find-focal --first 0 --last 99
-part find-focal "$tool/wide_rooms" --poses --stretch 0,0 --find-focal --first 1000 --last 1199
+part far-as-they-are "$tool/wide_rooms" --poses --as-they-are --first 1000 --last 1399
+part far "$tool/wide_rooms" --poses --first 1000 --last 1399
+part far-no-colours "$tool/wide_rooms" --poses --colours no --first 1000 --last 1399
+part far-fresh "$tool/wide_rooms" --poses --first 7100 --last 7299
+part near "$tool/wide_rooms" --poses --near --first 3000 --last 3149
+part turned "$tool/wide_rooms" --as-they-are --turned --first 0 --last 99
+part turned-focal "$tool/wide_rooms" --as-they-are --turned --find-focal --first 0 --last 99
+part find-focal "$tool/wide_rooms" --poses --find-focal --first 1000 --last 1199
 for error in 0 0.03 -0.03; do
-    part "focal-$error-exact" "$tool/wide_rooms" --poses --focal-error $error --first 1000 --last 1078
-    part "focal-$error-about" "$tool/wide_rooms" --poses --focal-error $error --focal-sd 0.05 --first 1000 --last 1078
+    part "focal-$error-exact" "$tool/wide_rooms" --poses --as-they-are --focal-error $error --first 1000 --last 1078
+    part "focal-$error-about" "$tool/wide_rooms" --poses --as-they-are --focal-error $error --focal-sd 0.05 --first 1000 --last 1078
 done
-part unrelated-rooms "$tool/wide_rooms" --stretch 0,0 --unrelated --first 1000 --last 1399
+part directions "$tool/directions" --first 0 --last 99
+part directions-fresh "$tool/directions" --first 7300 --last 7349
+part unrelated-rooms "$tool/wide_rooms" --unrelated --colours no --first 1000 --last 1399
 part stages "$tool/wide_stages" --first 0 --last 99
 part facades "$python" "$here/facades.py" "$cli" --seeds 6 --stains 0,6,10,15
 

@@ -2,14 +2,15 @@
 /* Two-view geometry on rendered rooms seen from far apart, whose cameras are known.
  *
  *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras | --find-focal | --focal-error E] [--focal-sd S]
- *                [--stretch X,Y] [--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N]
+ *                [--stretch X,Y | --as-they-are] [--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N]
  *                [--near | --turned] [--poses] [--colours yes|no]
  *
  * Pairs of seeds --first (0) to --last (99): status, model, log10 NFA, pose error (the larger of rotation and direction of
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
  * 1, 2, 5, 10 and 20 degrees, how many of the pairs with a third in common were accepted, and how many of the accepted are wrong by
  * more than 3 degrees. --held-out: seeds that nothing was tuned on. --unrelated: image 1 of a seed with image 2 of the next one.
- * --stretch: by asj_match_images(); 0,0: automatically.
+ * Pairs are looked at by asj_match_images(), automatically as asj-cli match does (0,0) or with the --stretch that is given;
+ * --as-they-are: by asj_detect() and asj_match(), which look once.
  * --focal-error: cameras are given with focal lengths that are too long by E (0.05: by 5 %). --focal-sd: how well they are told
  * to be known (0).
  * --near: the cameras are 1 to 15 degrees apart. --turned: they stand in one place; error: of the rotation, and no pose is right,
@@ -38,7 +39,7 @@ static const double least_matches = 0.90;                    /* and of the match
 static const int most_wrong = 0, most_wrong_with_focal = 2, most_far_off = 0;
 
 typedef struct settings {
-    int check, near, turned, held_out, unrelated, no_cameras, find_focal, first_octave, poses, look, colours, no_colours;
+    int check, near, turned, held_out, unrelated, no_cameras, find_focal, first_octave, poses, as_they_are, colours, no_colours;
     long first, last, draw, seed;
     double focal_error, focal_sd;
     asj_stretch stretch;
@@ -51,16 +52,53 @@ typedef struct tally {
     uint32_t matches, right_matches; /* of those that are accepted */
 } tally;
 
-static int detect(const settings *set, const synth_wide_pair *pair, int which, uint8_t **pixels, asj_image *image,
-                  asj_detection **found)
+static int take_picture(const synth_wide_pair *pair, int which, uint8_t **pixels, asj_image *image)
+{
+    *pixels = synth_wide_picture(pair, which);
+    *image = (asj_image){*pixels, ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
+    return *pixels ? 0 : -1;
+}
+
+static asj_detect_options detect_options_of(const settings *set)
 {
     asj_detect_options options;
     asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
     options.first_octave = set->first_octave;
     options.colours = set->colours;
-    *pixels = synth_wide_picture(pair, which);
-    *image = (asj_image){*pixels, ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
-    return *pixels && asj_detect(set->context, image, &options, found) == ASJ_OK ? 0 : -1;
+    return options;
+}
+
+static asj_match_options match_options_of(const settings *set, const synth_wide_pair *const pairs[2])
+{
+    asj_match_options options;
+    asj_match_options_init(&options);
+    options.look_at_colours = !set->no_colours;
+    options.geometry.model = ASJ_GEOMETRY_AUTO;
+    options.geometry.find_focal = set->find_focal;
+    options.geometry.focal_sd = set->focal_sd;
+    options.geometry.seed = (uint64_t)set->seed;
+    for (int v = 0; v < 2 && !set->no_cameras && !set->find_focal; v++) {
+        const double f = pairs[v]->cameras[v].focal * (1 + set->focal_error);
+        options.geometry.cameras[v] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
+    }
+    return options;
+}
+
+/* What a program does that detects and matches by itself. */
+static int match_as_they_are(const settings *set, const asj_image images[2], const asj_match_options *options,
+                             asj_match_result **result)
+{
+    const asj_detect_options detect_options = detect_options_of(set);
+    asj_detection *found[2] = {NULL, NULL};
+    int failed = 0;
+    for (int v = 0; v < 2 && !failed; v++)
+        failed = asj_detect(set->context, &images[v], &detect_options, &found[v]) != ASJ_OK;
+    if (!failed)
+        failed = asj_match(set->context, &images[0], found[0]->junctions, found[0]->junction_count, &images[1], found[1]->junctions,
+                           found[1]->junction_count, options, result) != ASJ_OK;
+    asj_detection_free(&found[0]);
+    asj_detection_free(&found[1]);
+    return failed;
 }
 
 /* A camera that only turns. */
@@ -160,41 +198,25 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
 
 static int match(const settings *set, const synth_wide_pair *first, const synth_wide_pair *second, tally *sum)
 {
-    const synth_wide_pair *pairs[2] = {first, second};
+    const synth_wide_pair *const pairs[2] = {first, second};
+    const asj_match_options options = match_options_of(set, pairs);
+    const asj_detect_options detect_options = detect_options_of(set);
     uint8_t *pixels[2] = {NULL, NULL};
     asj_image images[2];
-    asj_detection *found[2] = {NULL, NULL};
-    asj_match_options options;
     asj_match_result *result = NULL;
     int failed = 0;
-    asj_detect_options detect_options;
-    asj_detect_options_preset(&detect_options, ASJ_PRESET_MATCH);
-    detect_options.colours = set->colours;
-    asj_match_options_init(&options);
-    options.look_at_colours = !set->no_colours;
-    options.geometry.model = ASJ_GEOMETRY_AUTO;
-    options.geometry.find_focal = set->find_focal;
-    options.geometry.focal_sd = set->focal_sd;
-    options.geometry.seed = (uint64_t)set->seed;
-    for (int v = 0; v < 2 && !failed; v++) {
-        const double f = pairs[v]->cameras[v].focal * (1 + set->focal_error);
-        if (!set->no_cameras && !set->find_focal)
-            options.geometry.cameras[v] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
-        failed = detect(set, pairs[v], v, &pixels[v], &images[v], &found[v]);
-    }
-    if (!failed && set->look)
+    for (int v = 0; v < 2 && !failed; v++)
+        failed = take_picture(pairs[v], v, &pixels[v], &images[v]);
+    if (!failed && set->as_they_are)
+        failed = match_as_they_are(set, images, &options, &result);
+    else if (!failed)
         failed = asj_match_images(set->context, &images[0], &images[1], &set->stretch, &detect_options, &options, &result)
                  != ASJ_OK;
-    else if (!failed)
-        failed = asj_match(set->context, &images[0], found[0]->junctions, found[0]->junction_count, &images[1], found[1]->junctions,
-                           found[1]->junction_count, &options, &result) != ASJ_OK;
     if (!failed)
         count(set, first, result, sum);
     asj_match_result_free(&result);
-    for (int v = 0; v < 2; v++) {
-        asj_detection_free(&found[v]);
-        free(pixels[v]);
-    }
+    free(pixels[0]);
+    free(pixels[1]);
     return failed;
 }
 
@@ -280,16 +302,17 @@ static int run(const settings *set)
 static int usage(void)
 {
     fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras | --find-focal | --focal-error E] "
-          "[--focal-sd S] [--stretch X,Y] [--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] "
-          "[--near | --turned] [--poses] [--colours yes|no]\n", stderr);
+          "[--focal-sd S] [--stretch X,Y | --as-they-are] [--first-octave N] [--first N] [--last N] [--threads N] [--draw N] "
+          "[--seed N] [--near | --turned] [--poses] [--colours yes|no]\n", stderr);
     return 2;
 }
 
 int main(int argc, char **argv)
 {
     static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"held-out", 0, NULL, 'h'}, {"unrelated", 0, NULL, 'u'},
-                                          {"no-cameras", 0, NULL, 'n'}, {"stretch", 1, NULL, 's'}, {"first-octave", 1, NULL, '1'},
-                                          {"find-focal", 0, NULL, 'o'}, {"focal-error", 1, NULL, 'F'}, {"focal-sd", 1, NULL, 'S'},
+                                          {"no-cameras", 0, NULL, 'n'}, {"stretch", 1, NULL, 's'}, {"as-they-are", 0, NULL, 'a'},
+                                          {"first-octave", 1, NULL, '1'}, {"find-focal", 0, NULL, 'o'},
+                                          {"focal-error", 1, NULL, 'F'}, {"focal-sd", 1, NULL, 'S'},
                                           {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
                                           {"threads", 1, NULL, 't'}, {"draw", 1, NULL, 'd'}, {"seed", 1, NULL, 'e'},
                                           {"poses", 0, NULL, 'p'}, {"near", 0, NULL, 'r'}, {"turned", 0, NULL, 'w'},
@@ -311,8 +334,8 @@ int main(int argc, char **argv)
         case 's':
             if (sscanf(optarg, "%lf,%lf", &set.stretch.x, &set.stretch.y) != 2)
                 return usage();
-            set.look = 1;
             break;
+        case 'a': set.as_they_are = 1; break;
         case '1': set.first_octave = (int)strtol(optarg, NULL, 10); break;
         case 'f': set.first = strtol(optarg, NULL, 10); break;
         case 'l': set.last = strtol(optarg, NULL, 10); break;
