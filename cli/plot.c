@@ -233,6 +233,20 @@ static void draw_numbers(cairo_t *cairo, const cli_plot_layout *layout, double b
     }
 }
 
+/* What is grey, where there is room to say so. */
+static void draw_loose(cairo_t *cairo, const cli_plot_layout *layout, double x, double base, const char *name)
+{
+    const double em = layout->font, middle = base - 0.35 * em;
+    if (layout->width < x + 7 * em)
+        return;
+    cairo_set_line_width(cairo, 2 * layout->line);
+    set_color(cairo, loose);
+    cairo_move_to(cairo, x, middle);
+    cairo_line_to(cairo, x + 1.3 * em, middle);
+    cairo_stroke(cairo);
+    draw_text(cairo, x + 2 * em, base, name);
+}
+
 static void draw_legend(cairo_t *cairo, const drawing *d)
 {
     const cli_plot_layout *layout = &d->layout;
@@ -246,13 +260,16 @@ static void draw_legend(cairo_t *cairo, const drawing *d)
     if (d->style->color == CLI_PLOT_COLOR_BRANCH) {
         draw_numbers(cairo, layout, base, "branch", ASJ_MAX_BRANCHES);
     } else if (d->style->color == CLI_PLOT_COLOR_DIRECTION) {
-        draw_numbers(cairo, layout, base, d->scene->directions->count > 0 ? "direction" : "no directions",
-                     d->scene->directions->count);
+        const int32_t count = d->scene->directions->count;
+        draw_numbers(cairo, layout, base, "direction", count);
+        draw_loose(cairo, layout, (16 + 3 * count) * em, base, "none");
     } else {
         draw_text(cairo, 10.5 * em, base, "barely");
         draw_ramp(cairo, 14.4 * em, middle - 0.35 * em, 8 * em, 0.7 * em);
         snprintf(text, sizeof text, "sure   (log10 NFA %g to %g)", CLI_RAMP_UNSURE, CLI_RAMP_SURE);
         draw_text(cairo, 23 * em, base, text);
+        if (d->style->color == CLI_PLOT_COLOR_EDGE)
+            draw_loose(cairo, layout, 40 * em, base, "no edge");
     }
 }
 

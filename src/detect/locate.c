@@ -112,7 +112,7 @@ static int meet_lines(const asj_rough_line *lines, const double *weights, int32_
 static int meet(const asj_frame *frame, const asj_detect_options *options, const asj_rough_line *lines, asj_hypothesis *hypothesis)
 {
     const int alike = options->strip_test && frame->octave <= 0;
-    double weights[ASJ_MAX_BRANCHES], ones[ASJ_MAX_BRANCHES];
+    double weights[ASJ_MAX_BRANCHES] = {0}, ones[ASJ_MAX_BRANCHES] = {0};
     meeting m;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         weights[i] = 1 / hypothesis->branches[i].offset_variance;

@@ -6,6 +6,8 @@
 #include <stdint.h>
 
 #define ASJ_MOST_DIRECTIONS 2 /* sets of them, of one image */
+#define ASJ_NAMES 24          /* ways to name the directions of one image by those of another one */
+#define ASJ_MOST_ROTATIONS (ASJ_NAMES * ASJ_MOST_DIRECTIONS * ASJ_MOST_DIRECTIONS)
 #define ASJ_BRANCH_NUMBERS 8  /* x and y of both branches in both images */
 
 /* A candidate match, px; affine: linear part of the map from image 1 to image 2, row by row. */

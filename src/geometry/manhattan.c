@@ -35,7 +35,6 @@
 #include <string.h>
 
 #define NEAR (6 * ASJ_DEGREE)
-#define NAMES 24
 #define UPRIGHT_NAMES 4
 #define UPRIGHT 0.9
 #define DOWN 0.77 /* cos 40 degrees */
@@ -88,9 +87,9 @@ static double log_share_of(const asj_directions *first, const asj_directions *se
 {
     double down[2][3], turned[3];
     if (!find_down(first, down[0]) || !find_down(second, down[1]))
-        return log(1.0 / NAMES);
+        return log(1.0 / ASJ_NAMES);
     asj_apply3(matrix, down[0], turned);
-    return log((1 - UPRIGHT) / NAMES + (asj_dot3(turned, down[1]) > 0.5 ? UPRIGHT / UPRIGHT_NAMES : 0));
+    return log((1 - UPRIGHT) / ASJ_NAMES + (asj_dot3(turned, down[1]) > 0.5 ? UPRIGHT / UPRIGHT_NAMES : 0));
 }
 
 /* All ways to name the directions. */
@@ -104,7 +103,7 @@ static int32_t add_names(const asj_directions *first, const asj_directions *seco
         for (int32_t k = 0; k < 9; k++)
             permuted[k] = (n >> (k / 3) & 1 ? -1 : 1) * first->axes[3 * p[k / 3] + k % 3];
         asj_transposed_multiply3(second->axes, permuted, matrix);
-        if (!(asj_determinant3(matrix) > 0) || count == NAMES)
+        if (!(asj_determinant3(matrix) > 0) || count == ASJ_NAMES)
             continue;
         asj_likely_rotation *r = &list[count];
         r->log_share = log_share + log_share_of(first, second, matrix);
@@ -133,7 +132,7 @@ int32_t asj_manhattan_rotations(asj_memory *memory, const asj_directions_list di
     if (pairs == 0)
         return 1;
     set->has_down = find_down(&directions[0].list[0], set->down[0]) && find_down(&directions[1].list[0], set->down[1]);
-    set->rotations = asj_allocate_zero(memory, NAMES * (size_t)pairs, sizeof *set->rotations);
+    set->rotations = asj_allocate_zero(memory, ASJ_NAMES * (size_t)pairs, sizeof *set->rotations);
     for (int32_t v = 0; v < 2; v++)
         log_shares_of_sets(&directions[v], log_share[v]);
     for (int32_t i = 0; i < pairs && set->rotations; i++) {

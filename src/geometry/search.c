@@ -152,6 +152,9 @@ typedef struct work {
     asj_adjust_scratch *scratch; /* for each thread */
 } work;
 
+/* run_turned() has a model for each rotation in the room of those around CENTRES. */
+typedef char rotations_fit[ASJ_MOST_ROTATIONS <= CENTRES * (LOCAL + 1) ? 1 : -1];
+
 /* What a loop over samples or models works on. */
 typedef struct job {
     const asj_pairs *set;
