@@ -126,23 +126,30 @@ static inline void four_each(const uint16_t *gray, const int32_t *at, __m256i *f
     *second = _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0xdd));
 }
 
-/* Central differences at the four pixels around 8 samples, bilinear; places: the upper left one of each sample. */
-static inline void sample_eight(const uint16_t *gray, int32_t stride, __m256i places, __m256i right, __m256 low, __m256 *gx,
-                                __m256 *gy)
-{
+/* Where 8 samples are: the upper left one of the four pixels around each, and the weights of left and right ones, in 1/4096 and 16
+ * bits each, and of lower ones. */
+typedef struct sample_places {
     int32_t at[8];
+    __m256i weights;
+    __m256 low;
+} sample_places;
+
+/* Central differences at the four pixels around 8 samples, bilinear. */
+static inline void sample_eight(const uint16_t *gray, int32_t stride, const sample_places *places, __m256 *gx, __m256 *gy)
+{
+    const int32_t *at = places->at;
+    const __m256i weights = places->weights;
     __m256i left0, right0, left1, right1;
-    _mm256_storeu_si256((__m256i *)(void *)at, places);
     const __m256i above = two_at_eight(gray - stride, at), below = two_at_eight(gray + 2 * stride, at);
     four_each(gray - 1, at, &left0, &right0);
     four_each(gray + stride - 1, at, &left1, &right1);
     const __m256i middle0 = _mm256_or_si256(_mm256_srli_epi32(left0, 16), _mm256_slli_epi32(right0, 16));
     const __m256i middle1 = _mm256_or_si256(_mm256_srli_epi32(left1, 16), _mm256_slli_epi32(right1, 16));
-    const __m256i weights = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(4096), right), _mm256_slli_epi32(right, 16));
     const __m256i x0 = _mm256_madd_epi16(_mm256_sub_epi16(right0, left0), weights);
     const __m256i x1 = _mm256_madd_epi16(_mm256_sub_epi16(right1, left1), weights);
     const __m256i y0 = _mm256_madd_epi16(_mm256_sub_epi16(middle1, above), weights);
     const __m256i y1 = _mm256_madd_epi16(_mm256_sub_epi16(below, middle0), weights);
+    const __m256 low = places->low;
     *gx = _mm256_add_ps(_mm256_cvtepi32_ps(x0), _mm256_mul_ps(low, _mm256_cvtepi32_ps(_mm256_sub_epi32(x1, x0))));
     *gy = _mm256_add_ps(_mm256_cvtepi32_ps(y0), _mm256_mul_ps(low, _mm256_cvtepi32_ps(_mm256_sub_epi32(y1, y0))));
 }
@@ -176,43 +183,60 @@ static inline void total_profile(int32_t count, int32_t side, asj_profile_sums *
     sums->totals[side] = (struct asj_profile_totals){all.w, all.x, all.xx, all.y, all.xy};
 }
 
+/* Samples k .. k + 7 at each offset, those past the end like the last. */
+static inline void find_places(const asj_line_profile *profile, int32_t stride, int32_t k, sample_places *places)
+{
+    const __m256 lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7), last = _mm256_set1_ps((float)(profile->count - 1));
+    const __m256 ux = _mm256_set1_ps(profile->ux), uy = _mm256_set1_ps(profile->uy);
+    const __m256 index = _mm256_min_ps(_mm256_add_ps(_mm256_set1_ps((float)k), lane), last);
+    const __m256 t = _mm256_add_ps(_mm256_set1_ps(profile->first), _mm256_mul_ps(index, _mm256_set1_ps(profile->step)));
+    const __m256 middle = _mm256_add_ps(_mm256_set1_ps(profile->a), _mm256_mul_ps(_mm256_set1_ps(profile->b), t));
+    const __m256 x0 = _mm256_add_ps(_mm256_set1_ps(profile->origin_x), _mm256_mul_ps(t, ux));
+    const __m256 y0 = _mm256_add_ps(_mm256_set1_ps(profile->origin_y), _mm256_mul_ps(t, uy));
+    for (int32_t i = 0; i < profile->offsets; i++, places++) {
+        const __m256 s = _mm256_add_ps(middle, _mm256_set1_ps(profile->offset[i]));
+        const __m256 x = _mm256_sub_ps(x0, _mm256_mul_ps(s, uy)), y = _mm256_add_ps(y0, _mm256_mul_ps(s, ux));
+        const __m256i ix = whole_part(x), iy = whole_part(y);
+        const __m256 part = _mm256_sub_ps(x, _mm256_cvtepi32_ps(ix));
+        const __m256i right = _mm256_cvttps_epi32(_mm256_mul_ps(part, _mm256_set1_ps(4096.0f)));
+        const __m256i at = _mm256_add_epi32(_mm256_mullo_epi32(iy, _mm256_set1_epi32(stride)), ix);
+        _mm256_storeu_si256((__m256i *)(void *)places->at, at);
+        places->weights = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(4096), right), _mm256_slli_epi32(right, 16));
+        places->low = _mm256_sub_ps(y, _mm256_cvtepi32_ps(iy));
+    }
+}
+
+/* All places are found before anything is read there: from a place to what is added up are a hundred cycles, and processors, which
+ * look a few hundred operations ahead, have more samples under way so. */
 static void line_profile_avx2(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
 {
-    const __m256 zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f), lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256 zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f);
     const __m256 ux = _mm256_set1_ps(profile->ux), uy = _mm256_set1_ps(profile->uy);
     const int32_t stride = (int32_t)frame->stride;
     const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
     const int whole = asj_line_profile_inside(frame, profile, 0, profile->count);
+    sample_places places[ASJ_PROFILE_OFFSETS];
     for (int32_t k = 0; k < profile->count; k += 8) {
         const int32_t to = k + 8 < profile->count ? k + 8 : profile->count;
         if (frame->stride > 30000 || (!whole && !asj_line_profile_inside(frame, profile, k, to))) { /* indices stay below 2^31 */
             asj_line_profile_part(frame, profile, k, to, sums);
             continue;
         }
-        const __m256 last = _mm256_set1_ps((float)(profile->count - 1)); /* lanes past the end repeat it */
-        const __m256 index = _mm256_min_ps(_mm256_add_ps(_mm256_set1_ps((float)k), lane), last);
-        const __m256 t = _mm256_add_ps(_mm256_set1_ps(profile->first), _mm256_mul_ps(index, _mm256_set1_ps(profile->step)));
-        const __m256 middle = _mm256_add_ps(_mm256_set1_ps(profile->a), _mm256_mul_ps(_mm256_set1_ps(profile->b), t));
-        const __m256 x0 = _mm256_add_ps(_mm256_set1_ps(profile->origin_x), _mm256_mul_ps(t, ux));
-        const __m256 y0 = _mm256_add_ps(_mm256_set1_ps(profile->origin_y), _mm256_mul_ps(t, uy));
         __m256 up = zero, down = zero, up_moment = zero, down_moment = zero;
+        find_places(profile, stride, k, places);
         for (int32_t i = 0; i < profile->offsets; i++) {
-            const __m256 offset = _mm256_set1_ps(profile->offset[i]), s = _mm256_add_ps(middle, offset);
-            const __m256 x = _mm256_sub_ps(x0, _mm256_mul_ps(s, uy)), y = _mm256_add_ps(y0, _mm256_mul_ps(s, ux));
-            const __m256i ix = whole_part(x), iy = whole_part(y);
-            const __m256 part = _mm256_sub_ps(x, _mm256_cvtepi32_ps(ix)), low = _mm256_sub_ps(y, _mm256_cvtepi32_ps(iy));
-            const __m256i right = _mm256_cvttps_epi32(_mm256_mul_ps(part, _mm256_set1_ps(4096.0f)));
-            const __m256i at = _mm256_add_epi32(_mm256_mullo_epi32(iy, _mm256_set1_epi32(stride)), ix);
+            const __m256 offset = _mm256_set1_ps(profile->offset[i]);
             __m256 gx, gy;
-            sample_eight(gray, stride, at, right, low, &gx, &gy);
+            sample_eight(gray, stride, &places[i], &gx, &gy);
             const __m256 across = _mm256_sub_ps(_mm256_mul_ps(gy, ux), _mm256_mul_ps(gx, uy));
             const __m256 along = _mm256_add_ps(_mm256_mul_ps(gx, ux), _mm256_mul_ps(gy, uy));
             const __m256 w = _mm256_max_ps(_mm256_sub_ps(_mm256_andnot_ps(sign, across), _mm256_andnot_ps(sign, along)), zero);
-            const __m256 is_up = _mm256_cmp_ps(across, zero, _CMP_GT_OQ), moment = _mm256_mul_ps(w, offset);
-            up = _mm256_add_ps(up, _mm256_and_ps(w, is_up));
-            down = _mm256_add_ps(down, _mm256_andnot_ps(is_up, w));
-            up_moment = _mm256_add_ps(up_moment, _mm256_and_ps(moment, is_up));
-            down_moment = _mm256_add_ps(down_moment, _mm256_andnot_ps(is_up, moment));
+            const __m256 is_up = _mm256_cmp_ps(across, zero, _CMP_GT_OQ);
+            const __m256 w_up = _mm256_and_ps(w, is_up), w_down = _mm256_andnot_ps(is_up, w);
+            up = _mm256_add_ps(up, w_up);
+            down = _mm256_add_ps(down, w_down);
+            up_moment = _mm256_add_ps(up_moment, _mm256_mul_ps(w_up, offset));
+            down_moment = _mm256_add_ps(down_moment, _mm256_mul_ps(w_down, offset));
         }
         _mm256_storeu_ps(sums->w[0] + k, down);
         _mm256_storeu_ps(sums->w[1] + k, up);

@@ -149,19 +149,24 @@ static inline void four_each(const uint16_t *gray, const int32_t *at, __m512i *f
     *last = _mm512_permutex2var_epi32(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
 }
 
-/* As in lines.h. */
-static inline void sample_sixteen(const uint16_t *gray, int32_t stride, __m512i places, __m512i right, __m512 low, __m512 *gx,
-                                  __m512 *gy)
-{
+/* As in lines.h, of 16 samples. */
+typedef struct sample_places {
     int32_t at[16];
+    __m512i weights;
+    __m512 low;
+} sample_places;
+
+static inline void sample_sixteen(const uint16_t *gray, int32_t stride, const sample_places *places, __m512 *gx, __m512 *gy)
+{
+    const int32_t *at = places->at;
+    const __m512i weights = places->weights;
+    const __m512 low = places->low;
     __m512i left0, right0, left1, right1;
-    _mm512_storeu_si512(at, places);
     const __m512i above = two_at_sixteen(gray - stride, at), below = two_at_sixteen(gray + 2 * stride, at);
     four_each(gray - 1, at, &left0, &right0);
     four_each(gray + stride - 1, at, &left1, &right1);
     const __m512i middle0 = _mm512_or_si512(_mm512_srli_epi32(left0, 16), _mm512_slli_epi32(right0, 16));
     const __m512i middle1 = _mm512_or_si512(_mm512_srli_epi32(left1, 16), _mm512_slli_epi32(right1, 16));
-    const __m512i weights = _mm512_or_si512(_mm512_sub_epi32(_mm512_set1_epi32(4096), right), _mm512_slli_epi32(right, 16));
     const __m512i x0 = _mm512_madd_epi16(_mm512_sub_epi16(right0, left0), weights);
     const __m512i x1 = _mm512_madd_epi16(_mm512_sub_epi16(right1, left1), weights);
     const __m512i y0 = _mm512_madd_epi16(_mm512_sub_epi16(middle1, above), weights);
@@ -177,21 +182,36 @@ static inline __m512i whole_part(__m512 v)
     return _mm512_mask_sub_epi32(whole, above, whole, _mm512_set1_epi32(1));
 }
 
-/* Weights of 16 samples at (x, y); *across: their gradients along n. */
-static inline __m512 sample_weights(const uint16_t *gray, int32_t stride, __m512 x, __m512 y, __m512 ux, __m512 uy, __m512 *across)
+/* The samples of these indices, as numbers, each at an offset. */
+static inline void find_places(const asj_line_profile *profile, int32_t stride, __m512 index, __m512 offset, sample_places *places)
 {
+    const __m512 ux = _mm512_set1_ps(profile->ux), uy = _mm512_set1_ps(profile->uy);
+    const __m512 t = _mm512_add_ps(_mm512_set1_ps(profile->first), _mm512_mul_ps(index, _mm512_set1_ps(profile->step)));
+    const __m512 middle = _mm512_add_ps(_mm512_set1_ps(profile->a), _mm512_mul_ps(_mm512_set1_ps(profile->b), t));
+    const __m512 x0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_x), _mm512_mul_ps(t, ux));
+    const __m512 y0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_y), _mm512_mul_ps(t, uy));
+    const __m512 s = _mm512_add_ps(middle, offset);
+    const __m512 x = _mm512_sub_ps(x0, _mm512_mul_ps(s, uy)), y = _mm512_add_ps(y0, _mm512_mul_ps(s, ux));
     const __m512i ix = whole_part(x), iy = whole_part(y);
-    const __m512 part = _mm512_sub_ps(x, _mm512_cvtepi32_ps(ix)), low = _mm512_sub_ps(y, _mm512_cvtepi32_ps(iy));
+    const __m512 part = _mm512_sub_ps(x, _mm512_cvtepi32_ps(ix));
     const __m512i right = _mm512_cvttps_epi32(_mm512_mul_ps(part, _mm512_set1_ps(4096.0f)));
-    const __m512i at = _mm512_add_epi32(_mm512_mullo_epi32(iy, _mm512_set1_epi32(stride)), ix);
+    _mm512_storeu_si512(places->at, _mm512_add_epi32(_mm512_mullo_epi32(iy, _mm512_set1_epi32(stride)), ix));
+    places->weights = _mm512_or_si512(_mm512_sub_epi32(_mm512_set1_epi32(4096), right), _mm512_slli_epi32(right, 16));
+    places->low = _mm512_sub_ps(y, _mm512_cvtepi32_ps(iy));
+}
+
+/* Weights of 16 samples; *across: their gradients along n. */
+static inline __m512 sample_weights(const uint16_t *gray, int32_t stride, const sample_places *places, __m512 ux, __m512 uy,
+                                    __m512 *across)
+{
     __m512 gx, gy;
-    sample_sixteen(gray, stride, at, right, low, &gx, &gy);
+    sample_sixteen(gray, stride, places, &gx, &gy);
     const __m512 along = _mm512_add_ps(_mm512_mul_ps(gx, ux), _mm512_mul_ps(gy, uy));
     *across = _mm512_sub_ps(_mm512_mul_ps(gy, ux), _mm512_mul_ps(gx, uy));
     return _mm512_max_ps(_mm512_sub_ps(_mm512_abs_ps(*across), _mm512_abs_ps(along)), _mm512_setzero_ps());
 }
 
-/* Samples k .. k + 15 of a profile, those past its end like the last. */
+/* Samples k .. k + 15 of a profile, those past its end like the last. Places first: see lines.h. */
 static inline void profile_sixteen(const asj_frame *frame, const asj_line_profile *profile, int32_t k, asj_profile_sums *sums)
 {
     const __m512 zero = _mm512_setzero_ps(), ux = _mm512_set1_ps(profile->ux), uy = _mm512_set1_ps(profile->uy);
@@ -200,17 +220,14 @@ static inline void profile_sixteen(const asj_frame *frame, const asj_line_profil
     const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
     const __m512 last = _mm512_set1_ps((float)(profile->count - 1));
     const __m512 index = _mm512_min_ps(_mm512_add_ps(_mm512_set1_ps((float)k), lane), last);
-    const __m512 t = _mm512_add_ps(_mm512_set1_ps(profile->first), _mm512_mul_ps(index, _mm512_set1_ps(profile->step)));
-    const __m512 middle = _mm512_add_ps(_mm512_set1_ps(profile->a), _mm512_mul_ps(_mm512_set1_ps(profile->b), t));
-    const __m512 x0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_x), _mm512_mul_ps(t, ux));
-    const __m512 y0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_y), _mm512_mul_ps(t, uy));
     __m512 up = zero, down = zero, up_moment = zero, down_moment = zero;
+    sample_places places[ASJ_PROFILE_OFFSETS];
+    for (int32_t i = 0; i < profile->offsets; i++)
+        find_places(profile, stride, index, _mm512_set1_ps(profile->offset[i]), &places[i]);
     for (int32_t i = 0; i < profile->offsets; i++) {
-        const __m512 offset = _mm512_set1_ps(profile->offset[i]), s = _mm512_add_ps(middle, offset);
-        const __m512 x = _mm512_sub_ps(x0, _mm512_mul_ps(s, uy)), y = _mm512_add_ps(y0, _mm512_mul_ps(s, ux));
         __m512 across;
-        const __m512 w = sample_weights(gray, stride, x, y, ux, uy, &across);
-        const __m512 moment = _mm512_mul_ps(w, offset);
+        const __m512 w = sample_weights(gray, stride, &places[i], ux, uy, &across);
+        const __m512 moment = _mm512_mul_ps(w, _mm512_set1_ps(profile->offset[i]));
         const __mmask16 is_up = _mm512_cmp_ps_mask(across, zero, _CMP_GT_OQ), is_down = (__mmask16)~is_up;
         up = _mm512_mask_add_ps(up, is_up, up, w);
         down = _mm512_mask_add_ps(down, is_down, down, w);
@@ -223,31 +240,37 @@ static inline void profile_sixteen(const asj_frame *frame, const asj_line_profil
     _mm512_storeu_ps(sums->moment[1] + k, up_moment);
 }
 
-/* A profile of at most 16 samples, those at all offsets one after the other in the lanes: first fits have nine, and each offset for
- * itself would leave half of the lanes without work. */
-static inline void profile_short(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
+/* Those of a profile of at most 16 samples at all offsets, one after the other in the lanes; returns how many vectors they fill. */
+static inline int32_t find_all_places(const asj_line_profile *profile, int32_t stride, sample_places *places)
 {
-    const __m512 zero = _mm512_setzero_ps(), ux = _mm512_set1_ps(profile->ux), uy = _mm512_set1_ps(profile->uy);
     const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    const int32_t stride = (int32_t)frame->stride, count = profile->count, all = count * profile->offsets;
-    const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
+    const int32_t count = profile->count, all = count * profile->offsets;
     const __m512 offsets = _mm512_maskz_loadu_ps((__mmask16)((1 << ASJ_PROFILE_OFFSETS) - 1), profile->offset);
     const int32_t inverse = 65536 / count + 1; /* number / count = number inverse >> 16 up to 16 ASJ_PROFILE_OFFSETS */
-    float weights[16 * ASJ_PROFILE_OFFSETS + 16]; /* negative where the gradient points along -n */
-    for (int32_t first = 0; first < all; first += 16) {
+    int32_t vectors = 0;
+    for (int32_t first = 0; first < all; first += 16, vectors++) {
         const __m512i number = _mm512_min_epi32(_mm512_add_epi32(_mm512_set1_epi32(first), lane), _mm512_set1_epi32(all - 1));
         const __m512i i = _mm512_srli_epi32(_mm512_mullo_epi32(number, _mm512_set1_epi32(inverse)), 16);
         const __m512 index = _mm512_cvtepi32_ps(_mm512_sub_epi32(number, _mm512_mullo_epi32(i, _mm512_set1_epi32(count))));
-        const __m512 t = _mm512_add_ps(_mm512_set1_ps(profile->first), _mm512_mul_ps(index, _mm512_set1_ps(profile->step)));
-        const __m512 middle = _mm512_add_ps(_mm512_set1_ps(profile->a), _mm512_mul_ps(_mm512_set1_ps(profile->b), t));
-        const __m512 s = _mm512_add_ps(middle, _mm512_permutexvar_ps(i, offsets));
-        const __m512 x0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_x), _mm512_mul_ps(t, ux));
-        const __m512 y0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_y), _mm512_mul_ps(t, uy));
+        find_places(profile, stride, index, _mm512_permutexvar_ps(i, offsets), &places[vectors]);
+    }
+    return vectors;
+}
+
+/* Such a profile: first fits have nine, and each offset for itself would leave half of the lanes without work. */
+static inline void profile_short(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
+{
+    const __m512 zero = _mm512_setzero_ps(), ux = _mm512_set1_ps(profile->ux), uy = _mm512_set1_ps(profile->uy);
+    const int32_t stride = (int32_t)frame->stride, count = profile->count;
+    const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
+    float weights[16 * ASJ_PROFILE_OFFSETS + 16]; /* negative where the gradient points along -n */
+    sample_places places[ASJ_PROFILE_OFFSETS];
+    const int32_t vectors = find_all_places(profile, stride, places);
+    for (int32_t v = 0; v < vectors; v++) {
         __m512 across;
-        const __m512 w = sample_weights(gray, stride, _mm512_sub_ps(x0, _mm512_mul_ps(s, uy)),
-                                        _mm512_add_ps(y0, _mm512_mul_ps(s, ux)), ux, uy, &across);
+        const __m512 w = sample_weights(gray, stride, &places[v], ux, uy, &across);
         const __mmask16 is_down = _mm512_cmp_ps_mask(across, zero, _CMP_LE_OQ);
-        _mm512_storeu_ps(weights + first, _mm512_mask_sub_ps(w, is_down, zero, w));
+        _mm512_storeu_ps(weights + 16 * v, _mm512_mask_sub_ps(w, is_down, zero, w));
     }
     __m512 up = zero, down = zero, up_moment = zero, down_moment = zero;
     for (int32_t i = 0; i < profile->offsets; i++) {

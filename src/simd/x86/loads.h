@@ -27,8 +27,7 @@ static inline __m256i two_at_eight(const uint16_t *gray, const int32_t *at)
 static inline __m128i four_at_two(const uint16_t *gray, int32_t first, int32_t second)
 {
     const __m128i a = _mm_loadl_epi64((const __m128i *)(const void *)(gray + first));
-    const __m128i b = _mm_loadl_epi64((const __m128i *)(const void *)(gray + second));
-    return _mm_unpacklo_epi64(a, b);
+    return _mm_castps_si128(_mm_loadh_pi(_mm_castsi128_ps(a), (const __m64 *)(const void *)(gray + second)));
 }
 
 #endif
