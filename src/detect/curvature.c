@@ -102,15 +102,6 @@ static bend bend_of(const asj_frame *frame, const asj_hypothesis *hypothesis, co
     return (bend){-slope, m->t / m->w, sqrt(left / (m->count - 2) * m->w / determinant)};
 }
 
-/* What each has of the turn; the standard deviation of both together. */
-static double find_shares(const bend *a, const bend *b, double turn, double shares[2])
-{
-    const double sign = turn > 0 ? 1 : -1, theta = ASJ_PI - fabs(turn);
-    shares[0] = sign * a->curvature * a->middle / theta;
-    shares[1] = -sign * b->curvature * b->middle / theta;
-    return hypot(a->sd * a->middle, b->sd * b->middle) / theta;
-}
-
 /* From one branch to the other, -pi to pi. */
 static double signed_turn(const asj_hypothesis_branch *a, const asj_hypothesis_branch *b)
 {
@@ -118,10 +109,16 @@ static double signed_turn(const asj_hypothesis_branch *a, const asj_hypothesis_b
     return turn > ASJ_PI ? turn - ASJ_TWO_PI : turn;
 }
 
+/* What a branch has of the turn to the other one of its pair; `sign`: of the way that it would turn on an arc. */
+static double share_of(const bend *branch, double turn, double sign)
+{
+    return (turn > 0 ? sign : -sign) * branch->curvature * branch->middle / (ASJ_PI - fabs(turn));
+}
+
 static int on_arc(const bend *a, const bend *b, double turn)
 {
-    double shares[2];
-    const double sd = find_shares(a, b, turn, shares), all = shares[0] + shares[1];
+    const double shares[2] = {share_of(a, turn, 1), share_of(b, turn, -1)}, all = shares[0] + shares[1];
+    const double sd = hypot(a->sd * a->middle, b->sd * b->middle) / (ASJ_PI - fabs(turn));
     return all >= EVEN && all - SURELY * sd >= HALF && fmin(shares[0], shares[1]) >= EVEN_EACH;
 }
 
@@ -137,20 +134,34 @@ static int is_short_and_soft(const asj_hypothesis *hypothesis)
     return shortest < STRAIGHT && softest > ASJ_SOFT_FROM;
 }
 
+/* Branches of a hypothesis and what is known of their bends: most are straight, and with one of them no pair is on an arc. */
+typedef struct bends {
+    const asj_frame *frame;
+    const asj_hypothesis *hypothesis;
+    int32_t known; /* the bends of so many are */
+    bend list[ASJ_MAX_BRANCHES];
+} bends;
+
+static const bend *find_bend(bends *b, int32_t branch)
+{
+    for (; b->known <= branch; b->known++)
+        b->list[b->known] = bend_of(b->frame, b->hypothesis, &b->hypothesis->branches[b->known]);
+    return &b->list[branch];
+}
+
 int asj_is_arc(const asj_frame *frame, const asj_hypothesis *hypothesis, double least)
 {
-    bend bends[ASJ_MAX_BRANCHES];
+    bends found = {.frame = frame, .hypothesis = hypothesis};
     int seen = 0; /* a pair on an arc */
     if (is_short_and_soft(hypothesis))
         return 0;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        bends[i] = bend_of(frame, hypothesis, &hypothesis->branches[i]);
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         for (int32_t j = i + 1; j < hypothesis->branch_count; j++) {
             const double turn = signed_turn(&hypothesis->branches[i], &hypothesis->branches[j]);
             if (fabs(turn) < least || fabs(turn) > ASJ_PI - least)
                 continue;
-            if (!on_arc(&bends[i], &bends[j], turn))
+            if (!(share_of(find_bend(&found, i), turn, 1) >= EVEN_EACH) ||
+                !on_arc(find_bend(&found, i), find_bend(&found, j), turn))
                 return 0;
             seen = 1;
         }
