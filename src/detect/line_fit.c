@@ -220,18 +220,19 @@ static int solve_sums(const asj_line_sums *sums, const asj_rough_line *rough, do
     return 1;
 }
 
-int asj_line_guess(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
-                   asj_rough_line *rough)
+static asj_line_box box_of(double x, double y, const double t[2], double half_width, const asj_rough_line *rough)
 {
     const double wide = half_width + 0.5 * rough->apart, middle = 0.5 * (t[0] + t[1]), ux = rough->ux, uy = rough->uy;
-    asj_line_band band;
-    asj_line_sums sums[2];
-    line lines[2], found;
-    const asj_line_box box = {x + middle * ux - rough->offset * uy, y + middle * uy + rough->offset * ux, ux, uy,
-                              0.5 * (t[1] - t[0]), wide < WIDEST ? wide : WIDEST};
-    asj_line_band_set(frame, &box, &band);
-    ops->sums(frame, &band, sums);
+    return (asj_line_box){x + middle * ux - rough->offset * uy, y + middle * uy + rough->offset * ux, ux, uy,
+                          0.5 * (t[1] - t[0]), wide < WIDEST ? wide : WIDEST};
+}
+
+/* The line that these sums give. */
+static int guess_from_sums(const asj_line_sums sums[2], const double t[2], asj_rough_line *rough)
+{
+    const double middle = 0.5 * (t[0] + t[1]), ux = rough->ux, uy = rough->uy;
     const int strong = sums[1].w > sums[0].w;
+    line lines[2], found;
     double apart = 0;
     if (!solve_sums(&sums[strong], rough, middle, &lines[strong]))
         return 0;
@@ -244,4 +245,29 @@ int asj_line_guess(const asj_line_ops *ops, const asj_frame *frame, double x, do
     const double unit = 1 / sqrt(1 + found.b * found.b);
     *rough = (asj_rough_line){(ux - found.b * uy) * unit, (uy + found.b * ux) * unit, found.a * unit, apart};
     return 1;
+}
+
+/* What begins and what ends a guess are long chains of operations: those of all lines stand side by side, so that processors have
+ * them under way together. */
+void asj_line_guess_all(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
+                        int32_t count, asj_rough_line *rough, int *found)
+{
+    asj_line_band bands[ASJ_MAX_BRANCHES];
+    asj_line_sums sums[ASJ_MAX_BRANCHES][2];
+    for (int32_t i = 0; i < count; i++) {
+        const asj_line_box box = box_of(x, y, t, half_width, &rough[i]);
+        asj_line_band_set(frame, &box, &bands[i]);
+    }
+    for (int32_t i = 0; i < count; i++)
+        ops->sums(frame, &bands[i], sums[i]);
+    for (int32_t i = 0; i < count; i++)
+        found[i] = guess_from_sums(sums[i], t, &rough[i]);
+}
+
+int asj_line_guess(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
+                   asj_rough_line *rough)
+{
+    int found;
+    asj_line_guess_all(ops, frame, x, y, t, half_width, 1, rough, &found);
+    return found;
 }

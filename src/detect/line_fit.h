@@ -34,4 +34,8 @@ void asj_rough_line_keep(const asj_rough_line *rough, asj_hypothesis_branch *bra
 int asj_line_guess(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
                    asj_rough_line *rough);
 
+/* The same for the lines of up to ASJ_MAX_BRANCHES branches of a junction; found[i]: whether line i was. */
+void asj_line_guess_all(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
+                        int32_t count, asj_rough_line *rough, int *found);
+
 #endif

@@ -160,12 +160,12 @@ static void guess_lines(const asj_context *context, const asj_frame *frame, doub
                         asj_hypothesis *hypothesis, asj_rough_line *lines)
 {
     const double t[2] = {fit_first(hypothesis), end};
+    const int32_t count = hypothesis->branch_count;
     int keep[ASJ_MAX_BRANCHES], kept = 0;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
-        lines[kept] = lines[i];
-        keep[i] = asj_line_guess(context->ops->line, frame, hypothesis->x, hypothesis->y, t, half_width, &lines[kept]);
-        kept += keep[i];
-    }
+    asj_line_guess_all(context->ops->line, frame, hypothesis->x, hypothesis->y, t, half_width, count, lines, keep);
+    for (int32_t i = 0; i < count; i++)
+        if (keep[i])
+            lines[kept++] = lines[i];
     asj_hypothesis_select(hypothesis, keep);
 }
 
