@@ -44,7 +44,8 @@ typedef struct axis {
     double x, y, ux, uy;
 } axis;
 
-/* The samples of a band around the line s = a + b t. Centroids are r(t) from there; no sum needs one, but for the residuals. */
+/* The samples of a band around the line s = a + b t: of sign 1 where the gradient points along +n, of sign 0 along -n. Centroids
+ * are r(t) from there; no sum needs one, but for the residuals. */
 typedef struct samples {
     asj_line_profile profile;
     asj_profile_sums sums; /* W(t) and W(t) r(t) */
@@ -62,9 +63,7 @@ typedef struct line {
     double a_variance, b_variance;
 } line;
 
-/* Those whose gradient points along +n are of sign 1, along -n of sign 0. */
-static void collect(const asj_line_ops *ops, const asj_frame *frame, const axis *along, const asj_line_range *range,
-                    double half_width, const line *around, samples *out)
+static void place_samples(const axis *along, const asj_line_range *range, double half_width, const line *around, samples *out)
 {
     const int32_t reach = (int32_t)ceil(half_width);
     asj_line_profile *profile = &out->profile;
@@ -86,7 +85,6 @@ static void collect(const asj_line_ops *ops, const asj_frame *frame, const axis 
     profile->y = (int32_t)floor(along->y);
     profile->origin_x = (float)(along->x - profile->x);
     profile->origin_y = (float)(along->y - profile->y);
-    ops->profile(frame, profile, &out->sums);
 }
 
 /* From sums over k: t = first + k step. */
@@ -163,34 +161,63 @@ static int choose(const samples *in, const asj_line_range *range, int variances,
     return 1;
 }
 
-int asj_line_fit_along(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_rough_line *along,
-                       const asj_line_range *range, asj_hypothesis_branch *branch)
-{
-    const axis from = {x, y, along->ux, along->uy};
-    line found = {branch->offset, 0, 0, 0};
-    double apart = branch->apart;
+/* A fit under way. */
+typedef struct fit {
+    axis from;
+    line found;
+    double apart;
     samples list;
-    for (int32_t i = 0; i < range->iterations; i++) {
-        double half_width = range->half_width[i] + 0.5 * apart;
-        collect(ops, frame, &from, range, half_width < WIDEST ? half_width : WIDEST, &found, &list);
-        if (!choose(&list, range, i + 1 == range->iterations, &found, &apart))
-            return 0;
+} fit;
+
+/* One iteration for all lines that there are still; side by side: see asj_line_guess_all(). */
+static void iterate(const asj_line_ops *ops, const asj_frame *frame, const asj_line_range *range, int32_t iteration, int32_t count,
+                    fit *fits, int *fitted)
+{
+    for (int32_t i = 0; i < count; i++) {
+        const double half_width = range->half_width[iteration] + 0.5 * fits[i].apart;
+        if (fitted[i])
+            place_samples(&fits[i].from, range, half_width < WIDEST ? half_width : WIDEST, &fits[i].found, &fits[i].list);
     }
-    if (!(fabs(found.b) < 1))
-        return 0;
-    branch->angle = asj_angle_wrap(branch->angle + atan(found.b));
-    branch->offset = found.a / sqrt(1 + found.b * found.b);
-    branch->apart = apart;
-    branch->offset_variance = found.a_variance;
-    branch->angle_variance = found.b_variance;
-    return 1;
+    for (int32_t i = 0; i < count; i++)
+        if (fitted[i])
+            ops->profile(frame, &fits[i].list.profile, &fits[i].list.sums);
+    for (int32_t i = 0; i < count; i++)
+        if (fitted[i])
+            fitted[i] = choose(&fits[i].list, range, iteration + 1 == range->iterations, &fits[i].found, &fits[i].apart);
+}
+
+void asj_line_fit_all(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_rough_line *along,
+                      const asj_line_range *range, int32_t count, asj_hypothesis_branch *branches, int *fitted)
+{
+    fit fits[ASJ_MAX_BRANCHES];
+    for (int32_t i = 0; i < count; i++) {
+        fits[i].from = (axis){x, y, along[i].ux, along[i].uy};
+        fits[i].found = (line){branches[i].offset, 0, 0, 0};
+        fits[i].apart = branches[i].apart;
+        fitted[i] = 1;
+    }
+    for (int32_t iteration = 0; iteration < range->iterations; iteration++)
+        iterate(ops, frame, range, iteration, count, fits, fitted);
+    for (int32_t i = 0; i < count; i++) {
+        const line *found = &fits[i].found;
+        fitted[i] = fitted[i] && fabs(found->b) < 1;
+        if (!fitted[i])
+            continue;
+        branches[i].angle = asj_angle_wrap(branches[i].angle + atan(found->b));
+        branches[i].offset = found->a / sqrt(1 + found->b * found->b);
+        branches[i].apart = fits[i].apart;
+        branches[i].offset_variance = found->a_variance;
+        branches[i].angle_variance = found->b_variance;
+    }
 }
 
 int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
                  asj_hypothesis_branch *branch)
 {
     const asj_rough_line along = asj_rough_line_of(branch);
-    return asj_line_fit_along(ops, frame, x, y, &along, range, branch);
+    int fitted;
+    asj_line_fit_all(ops, frame, x, y, &along, range, 1, branch, &fitted);
+    return fitted;
 }
 
 asj_rough_line asj_rough_line_of(const asj_hypothesis_branch *branch)

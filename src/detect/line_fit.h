@@ -23,9 +23,10 @@ typedef struct asj_rough_line {
 int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
                  asj_hypothesis_branch *branch);
 
-/* The same where the branch's direction is known already: that of `along`, nothing else of which counts. */
-int asj_line_fit_along(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_rough_line *along,
-                       const asj_line_range *range, asj_hypothesis_branch *branch);
+/* The same for the branches of a junction, up to ASJ_MAX_BRANCHES, whose directions are known already: those of `along`, nothing
+ * else of which counts. fitted[i]: what asj_line_fit() returns. */
+void asj_line_fit_all(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_rough_line *along,
+                      const asj_line_range *range, int32_t count, asj_hypothesis_branch *branches, int *fitted);
 
 asj_rough_line asj_rough_line_of(const asj_hypothesis_branch *branch);
 void asj_rough_line_keep(const asj_rough_line *rough, asj_hypothesis_branch *branch);

@@ -149,9 +149,8 @@ static void fit_branches(const asj_context *context, const asj_frame *frame, con
                          const asj_rough_line *lines, asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        keep[i] = asj_line_fit_along(context->ops->line, frame, hypothesis->x, hypothesis->y, &lines[i], range,
-                                     &hypothesis->branches[i]);
+    asj_line_fit_all(context->ops->line, frame, hypothesis->x, hypothesis->y, lines, range, hypothesis->branch_count,
+                     hypothesis->branches, keep);
     asj_hypothesis_select(hypothesis, keep);
 }
 
