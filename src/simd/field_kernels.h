@@ -257,13 +257,20 @@ static uint32_t find_candidates(const tile *t, int v, const sector_words strong)
     return found;
 }
 
-/* Whether any sector of any pixel is in these words. */
-static inline int has_any(const sector_words words, int32_t count)
+/* Whether the strong sectors of any pixel may hold two that are `apart`. */
+static inline int may_have_pair(const sector_words words, int32_t count, int32_t apart)
 {
-    vec any = words[0];
-    for (int32_t word = 1; word * WORD < count; word++)
-        any = v_or(any, words[word]);
-    return v_any(v_greater(any, v_zero()));
+    const vec zero = v_zero();
+    vec seen = zero, found = zero;
+    for (int32_t word = 0; word * WORD < count; word++) {
+        const vec bits = words[word], any = v_greater(bits, zero);
+        vec near = v_and(bits, v_sub(zero, bits)); /* the last bit, and those that are too near it */
+        for (int32_t i = 1; i < apart; i++)
+            near = v_or(near, v_add(near, near));
+        found = v_or(found, v_or(v_and(seen, any), v_greater(bits, v_and(near, v_set1(INT16_MAX)))));
+        seen = v_or(seen, any);
+    }
+    return v_any(found);
 }
 
 /* Eight bits in even places. */
@@ -286,7 +293,8 @@ static void tile_row(const tile *t, int32_t runs, uint16_t *masks)
         fill_strengths(t, strong);
         repeat_ends(t->z, t->field->sectors.count, t->field->suppress, GROUP_PIXELS);
         for (int v = 0; v < GROUP; v++) {
-            const uint32_t bits = has_any(strong[v], t->field->sectors.count) ? find_candidates(t, v, strong[v]) : 0;
+            const int worth = may_have_pair(strong[v], t->field->sectors.count, t->field->apart);
+            const uint32_t bits = worth ? find_candidates(t, v, strong[v]) : 0;
             for (int part = 0; part < V_LANES; part += 8) {
                 const int pixel = v * V_LANES + part;
                 const uint32_t eight = bits >> part & 255;
