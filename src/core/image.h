@@ -90,6 +90,11 @@ void asj_frame_repeat_border(const asj_frame *frame);
  * asj_frame_load(). */
 asj_status asj_frame_upsample(asj_context *context, asj_frame *frame, const asj_image *image, int32_t plane);
 
+/* Makes room for the image at another size, at least .75 of its own in both directions, and fills frame->gray with a plane of it
+ * (resized.c). The frame's octaves stay what they are. Statuses as asj_frame_load(). */
+asj_status asj_frame_load_resized(asj_context *context, asj_frame *frame, const asj_image *image, int32_t plane, int32_t width,
+                                  int32_t height);
+
 /* Fills frame->gray with a plane of the view, ASJ_PLANE_... (asj_frame_prepare() first). Finds NaN and infinity. */
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image, int32_t plane);
 
