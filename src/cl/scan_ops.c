@@ -396,7 +396,7 @@ asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const as
     uint32_t waiting;
     if (count == 0)
         return ASJ_OK;
-    if (count > INT32_MAX / 2 || (rows < frame->height && rows <= OVERLAP))
+    if (scan->longest > 0 || count > INT32_MAX / 2 || (rows < frame->height && rows <= OVERLAP))
         return asj_scan_rays(context, scan, frame, rays, count);
     asj_status status = get(context, &state);
     if (status != ASJ_OK)

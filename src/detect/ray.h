@@ -34,6 +34,7 @@ typedef struct asj_scan {
     int32_t half_width;  /* 2 w + 1 samples in an arc */
     int32_t tolerance;   /* failing steps in a row that a ray survives */
     int32_t axial;       /* scan by axis as well */
+    int32_t longest;     /* px: rays are followed no farther; 0 = to their ends */
     int32_t rough;       /* ends where two strides fail, without a look at the steps before them */
     int32_t threshold;   /* least sum of an arc, in 1/256 standard deviations */
     int16_t unit[1024][2]; /* cos and sin of 1024 angles, 1 = 16384 */

@@ -176,8 +176,9 @@ static int has_edge(const asj_frame *frame, const asj_ray_direction *way, int32_
 /* Passes over the steps from here on that have an edge under them beyond doubt. */
 static void pass_over(const asj_scan *scan, const asj_frame *frame, asj_ray_walk *walk)
 {
+    const int32_t last = scan->longest > 0 ? scan->longest + ASJ_RAY_PLAIN : INT32_MAX;
     int32_t end = walk->r;
-    while (has_edge(frame, &walk->way, end))
+    while (end < last && has_edge(frame, &walk->way, end))
         end++;
     if (end - walk->r <= ASJ_RAY_PLAIN)
         return;
@@ -245,6 +246,7 @@ int asj_ray_walk_take(const asj_scan *scan, const asj_arc_sums *sums, asj_ray_wa
         if (goes_on && walk->r == walk->looked)
             goes_on = step(scan, &walk->far, walk);
     }
+    goes_on = goes_on && (scan->longest == 0 || walk->r <= scan->longest);
     if (!goes_on)
         asj_ray_walk_finish(scan, walk->ray);
     return goes_on;

@@ -32,6 +32,7 @@ void asj_scan_prepare(const asj_detect_options *options, const asj_field *field,
     scan->half_width = options->arc_half_width;
     scan->tolerance = options->scan_tolerance;
     scan->axial = options->scan_axial;
+    scan->longest = 0;
     scan->rough = 0;
     for (int i = 0; i < 1024; i++) {
         scan->unit[i][0] = (int16_t)lrint(16384 * cos(ASJ_TWO_PI * i / 1024));

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 4 against the same definition in floating point, and against edges whose ends are known. */
 #include "detect/nfa.h"
+#include "detect/ray_walk.h"
 #include "detect/scan.h"
 #include "detect/scan_cache.h"
 #include "unit_test.h"
@@ -398,6 +399,31 @@ static void test_threads_and_memory(void **state)
     f->counter.fail_at = 0;
 }
 
+/* Rays that are followed for some px alone: those that end well before are what they were. */
+static void test_longest(void **state)
+{
+    enum { LONGEST = 30, BEFORE = 20, BEYOND = 2 * ASJ_RAY_STRIDE };
+    fixture *f = *state;
+    static asj_ray whole[RAYS], cut[RAYS];
+    synth_scene scene;
+    int ended = 0;
+    scene_of(0, &scene);
+    take_picture(f, &scene, 2);
+    random_rays(f, whole, RAYS, 11);
+    memcpy(cut, whole, sizeof cut);
+    assert_int_equal(follow(f, whole, RAYS), ASJ_OK);
+    f->scan.longest = LONGEST;
+    assert_int_equal(follow(f, cut, RAYS), ASJ_OK);
+    f->scan.longest = 0;
+    for (size_t i = 0; i < RAYS; i++) {
+        assert_true(cut[i].forward <= whole[i].forward && cut[i].forward <= LONGEST + BEYOND);
+        if (whole[i].forward <= BEFORE && whole[i].axial <= BEFORE)
+            assert_true(cut[i].forward == whole[i].forward && cut[i].axial == whole[i].axial);
+        ended += whole[i].forward > LONGEST + BEYOND;
+    }
+    assert_true(ended > RAYS / 10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -405,7 +431,7 @@ int main(void)
             cmocka_unit_test_setup(test_both, reset),
         cmocka_unit_test_setup(test_sides, reset),     cmocka_unit_test_setup(test_nothing, reset),
             cmocka_unit_test_setup(test_long_ray, reset),
-        cmocka_unit_test_setup(test_threads_and_memory, reset),
+        cmocka_unit_test_setup(test_threads_and_memory, reset), cmocka_unit_test_setup(test_longest, reset),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
