@@ -60,9 +60,9 @@ typedef struct asj_detect_options {
                                    * and blue against yellow: finds corners between surfaces that hardly differ in luma, in 1.2 to
                                    * 1.7 times the time. These need an NFA of 1, .001 where the noise of colours is smooth as that
                                    * of JPEG is, or epsilon if that is less; where octaves share false alarms all planes do. 0 */
-    int32_t three_sizes;          /* 1 = the image is looked at .84 and 1.19 times as large, too, and what two of the three have
-                                   * stays: fewer junctions that come and go with small changes of the image, more weak corners,
-                                   * in 2.4 to 3.2 times the time and 17 bytes for each pixel in place of 7. 0 */
+    int32_t three_sizes;          /* 1 = where there may be junctions the image is looked at .84 and 1.19 times as large, too, and
+                                   * what two of the three have stays: fewer that come and go with small changes of the image, in
+                                   * 1.4 to 1.7 times the time and 16 bytes for each pixel in place of 7. 0 */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much
                                    * weaker than this is flat. 0.05 .. 16; default 0.4; paper 0.05 */

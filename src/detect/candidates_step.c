@@ -74,7 +74,7 @@ asj_status asj_step_candidates(asj_detection_run *run)
         run->candidates = asj_allocate(&context->memory, runs, sizeof *run->candidates);
     if (!run->candidates)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the candidates");
-    if (run->places) {
+    if (run->size > 0) {
         asj_sizes_mark_candidates(run);
         run->candidate_count = asj_candidates_count(run->candidates, runs);
         return ASJ_OK;

@@ -79,13 +79,13 @@ static asj_status run_octave(asj_detection_run *run)
 static asj_status run_octaves(asj_detection_run *run)
 {
     const asj_octave_range range = asj_octaves_of(run->options, run->whole->width, run->whole->height);
-    const double pixels = range.pixels * run->planes.count * asj_sizes_area(run);
+    const double pixels = range.pixels * run->planes.count * asj_sizes_time(run);
     asj_status status = asj_step_load(run);
     while (run->octave < range.first && status == ASJ_OK)
         status = asj_step_halve(run);
     for (;;) {
         run->done += run->size > 0 || run->plane > 0 || run->octave > range.first ? run->share : 0;
-        run->share = (double)run->frame->width * run->frame->height / pixels;
+        run->share = asj_size_time(run) * run->frame->width * run->frame->height / pixels;
         status = status == ASJ_OK ? run_octave(run) : status;
         if (status != ASJ_OK || run->octave + 1 >= range.end)
             break;

@@ -38,8 +38,8 @@ static const asj_option_info rows[] = {
            "look at 8-bit colours, too: corners between surfaces of different colours that are equally bright, in 1.2 to 1.7 times "
            "the time; they match where a geometry is asked"),
     SWITCH(OCTAVES, ADVANCED, three_sizes, 0, 0, 0,
-           "look at the image 0.84 and 1.19 times as large, too, and keep what two of the three have: junctions that stay when an "
-           "image changes a little, and more weak ones, in 2.4 to 3.2 times the time"),
+           "look at junctions 0.84 and 1.19 times as large, too, and keep what two of the three have: those that stay when an "
+           "image changes a little, in 1.4 to 1.7 times the time"),
 
     NUMBER(GRADIENT, COMMON, gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, 0.4,
            "gradient below which a surface counts as flat; raise it against compression noise"),

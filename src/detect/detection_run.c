@@ -172,11 +172,12 @@ void asj_detection_run_clear_sizes(asj_detection_run *run)
     asj_memory *memory = &run->context->memory;
     for (int32_t i = 0; i < run->sizes.count; i++)
         asj_release(memory, run->sizes.found[i].found);
-    asj_release(memory, run->stretched);
     asj_release(memory, run->places);
+    asj_release(memory, run->size_cells);
+    asj_release(memory, run->rejected);
     run->sizes.count = 0;
-    run->stretched = NULL;
-    run->places = NULL;
+    run->places = run->rejected = NULL;
+    run->size_cells = NULL;
 }
 
 asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_known *known)

@@ -66,10 +66,12 @@ typedef struct asj_detection_run {
     asj_sizes sizes;                 /* what those before it have found, */
     const asj_image *whole;          /* the caller's image and region; while another size is looked at .. */
     const asj_region *whole_region;
-    asj_image other;                 /* .. this is `image`, .. */
-    void *stretched;                 /* .. its pixels, */
-    double *places;                  /* and where it alone is looked at: x and y, px of `whole`; NULL = everywhere */
+    asj_image other;                 /* .. this is `image`, which has a size and no pixels, .. */
+    asj_size_place *places;          /* .. and here alone it is looked at */
     size_t place_count;
+    int32_t *size_cells;             /* grids of what those before it have found */
+    asj_size_place *rejected;        /* of the image itself, by validation */
+    size_t rejected_count, rejected_capacity;
     asj_evidence *evidence;          /* of branches of all octaves, by asj_hypothesis_branch.evidence */
     size_t evidence_count, evidence_capacity;
     asj_edge *edges;                 /* between hypotheses */

@@ -8,6 +8,8 @@
 #include "core/threads.h"
 #include "core/watch.h"
 
+#include <string.h>
+
 #define LEAST_ENDS 64 /* junctions for a thread: fewer take less time than to wake it */
 
 /* Hypotheses that are shared out. */
@@ -27,18 +29,26 @@ static void measure_some(const void *data, const asj_part *part)
     }
 }
 
-/* Room for the evidence of every branch, behind that of other octaves. */
-static asj_status number_branches(asj_detection_run *run)
+/* Room for the evidence of every branch, behind that of other octaves. The votes, which stand elsewhere, share one that is not
+ * measured. */
+static asj_status number_branches(asj_detection_run *run, asj_hypothesis *votes, size_t vote_count)
 {
+    const asj_evidence none = {.length = 0};
     size_t total = run->evidence_count;
     for (size_t i = 0; i < run->hypothesis_count; i++)
         for (int32_t b = 0; b < run->hypotheses[i].branch_count; b++)
             run->hypotheses[i].branches[b].evidence = (int32_t)total++;
+    for (size_t i = 0; i < vote_count; i++)
+        for (int32_t b = 0; b < votes[i].branch_count; b++)
+            votes[i].branches[b].evidence = (int32_t)total;
+    total += vote_count > 0;
     void *list = run->evidence;
     const asj_status status = asj_grow(&run->context->memory, &list, &run->evidence_capacity, asj_detection_run_room(total),
                                        sizeof *run->evidence, run->evidence_count);
     run->evidence = list;
     run->evidence_count = status == ASJ_OK ? total : 0;
+    if (status == ASJ_OK && vote_count > 0)
+        run->evidence[total - 1] = none;
     return status == ASJ_OK ? status : asj_fail(run->context, status, "no memory for %zu branches", total);
 }
 
@@ -111,14 +121,22 @@ asj_status asj_step_ends(asj_detection_run *run)
         status = asj_drop_soft_twins(run);
     if (status == ASJ_OK)
         status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions");
+    const size_t vote_count = asj_sizes_votes_last(run); /* which need no ends */
+    run->hypothesis_count -= vote_count;
+    asj_hypothesis *votes = run->hypotheses + run->hypothesis_count;
     if (status == ASJ_OK)
         status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);
     leave_out_rejected(run);
     if (status == ASJ_OK)
         status = look_for_junctions(run, run->frame->width, run->frame->height, asj_ends_mark);
     if (status == ASJ_OK)
-        status = number_branches(run);
-    return status == ASJ_OK ? measure_all(run) : status;
+        status = number_branches(run, votes, vote_count);
+    if (status == ASJ_OK)
+        status = measure_all(run);
+    if (vote_count > 0)
+        memmove(run->hypotheses + run->hypothesis_count, votes, vote_count * sizeof *votes);
+    run->hypothesis_count += vote_count;
+    return status;
 }
 
 asj_status asj_step_snap(asj_detection_run *run)

@@ -10,6 +10,12 @@
 
 asj_status asj_step_load(asj_detection_run *run)
 {
+    if (run->size > 0) {
+        const double octave = run->octave < 0 ? run->octave : 0;
+        run->frame->octave = octave;
+        return asj_frame_load_resized(run->context, run->frame, run->whole, run->plane,
+                                      asj_octave_size(run->image->width, octave), asj_octave_size(run->image->height, octave));
+    }
     return run->octave < 0 ? asj_frame_upsample(run->context, run->frame, run->image, run->plane)
                            : asj_frame_load(run->context, run->frame, run->image, run->plane);
 }

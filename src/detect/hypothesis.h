@@ -74,6 +74,7 @@ typedef struct asj_hypothesis {
     double octave;             /* that located it: 0 = the image itself, 1/2, 1 = the image halved, .., -1 = upsampled by two */
     int32_t branch_count;      /* 0 = rejected */
     int32_t completes;         /* complete_step.c: the junction that its only branch may be one of */
+    int32_t is_vote;           /* 1 = says in a copy of another size that there is a junction (sizes.c), and nothing else of it */
     asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];
 } asj_hypothesis;
 

@@ -205,5 +205,6 @@ asj_status asj_step_locate(asj_detection_run *run)
         if (status == ASJ_OK && run->choice == 0)
             status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_LOCATE, steps[i].name);
     }
+    asj_sizes_tell_votes(run);
     return status;
 }

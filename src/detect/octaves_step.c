@@ -60,8 +60,9 @@ static void confirm_other(const asj_detection_run *run, asj_hypothesis *hypothes
 static asj_status confirm_others(asj_detection_run *run)
 {
     asj_status status = asj_frame_prepare_gray(run->context, run->frame, run->image->width, run->image->height);
+    run->octave = 0;
     if (status == ASJ_OK)
-        status = asj_frame_load(run->context, run->frame, run->image, run->plane);
+        status = asj_step_load(run);
     return status == ASJ_OK ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm_other) : status;
 }
 
@@ -87,7 +88,7 @@ asj_status asj_step_merge_octaves(asj_detection_run *run)
     run->hypothesis_capacity = run->all_capacity;
     run->all = NULL;
     run->all_count = run->all_capacity = 0;
-    if (run->one_list)
+    if (run->one_list && run->size + 1 < ASJ_SIZES) /* votes alone need not show in the image */
         status = confirm_others(run);
     return status == ASJ_OK && run->one_list ? merge(run) : status;
 }

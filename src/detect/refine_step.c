@@ -63,6 +63,8 @@ static void refine(const asj_detection_run *run, asj_hypothesis *hypothesis)
 
 asj_status asj_step_refine(asj_detection_run *run)
 {
-    const asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, refine);
+    asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, refine);
+    if (status == ASJ_OK)
+        status = asj_sizes_put_rejected(run);
     return status == ASJ_OK ? asj_suppress_all(run) : status;
 }

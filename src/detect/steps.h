@@ -28,9 +28,13 @@ asj_status asj_step_next_octave(asj_detection_run *run);  /* octaves_step.c: hyp
 asj_status asj_step_merge_octaves(asj_detection_run *run);/* octaves_step.c: one list of a plane's hypotheses */
 asj_status asj_step_merge_planes(asj_detection_run *run); /* planes_step.c: those that are new, put by */
 int32_t asj_sizes_of(const asj_detection_run *run);       /* sizes_step.c: how often the image is looked at */
-double asj_sizes_area(const asj_detection_run *run);      /* sizes_step.c: pixels of all of them, of the image's one */
+double asj_sizes_time(const asj_detection_run *run);      /* sizes_step.c: how long all take, for that of the image itself, */
+double asj_size_time(const asj_detection_run *run);       /* and a pixel of the one at hand, for one of the image */
 asj_status asj_step_next_size(asj_detection_run *run);    /* sizes_step.c: hypotheses put by, the image at the next size */
-void asj_sizes_mark_candidates(asj_detection_run *run);   /* sizes_step.c: step 2 of a look at some places */
+void asj_sizes_mark_candidates(asj_detection_run *run);   /* sizes_step.c: step 2 of a copy */
+asj_status asj_sizes_put_rejected(asj_detection_run *run); /* sizes_step.c: what validation has rejected, put by */
+void asj_sizes_tell_votes(asj_detection_run *run);        /* sizes_step.c: hypotheses of copies that are votes */
+size_t asj_sizes_votes_last(asj_detection_run *run);      /* sizes_step.c: these behind the others; how many */
 asj_status asj_step_merge_sizes(asj_detection_run *run);  /* sizes_step.c: what two looks have */
 asj_status asj_step_list(asj_detection_run *run);         /* planes_step.c: the hypotheses of all planes; ends of branches */
 asj_status asj_step_join(asj_detection_run *run);       /* edges_step.c: edges between junctions */

