@@ -325,7 +325,11 @@ def test_plots(tmp_path: Path, scene: Scene, pair: tuple[asj.Features, asj.Featu
         assert np.minimum(apart, 1 - apart).min() > 0.1
     assert len(_hues(places[:0])) == 0
     deep = np.repeat(scene[:, :, None], 3, 2).astype(np.uint16) * 257
-    shown = asj.plot(deep, pair[0]).images[0].get_array()
+    shown = asj.plot(deep, pair[0], pale=False).images[0].get_array()
     assert np.abs(shown[:, :, 1].astype(float) / shown.max() - scene / scene.max()).max() < 0.01
+    pale = asj.plot(deep, pair[0]).images[0].get_array()[:, :, 1].astype(float)
+    assert np.abs(pale - (255 - 0.45 * (255 - shown[:, :, 1]))).max() <= 1
+    drawn = with_legend.collections[0].get_array()  # of the branches, each by itself, the surest on top
+    assert np.array_equal(drawn, -pair[0].branches["log10_nfa"][::-1]) and len(np.unique(drawn)) > len(pair[0])
     with pytest.raises(asj.ImageError, match="pixels"):
         asj.plot("scene.png", pair[0])

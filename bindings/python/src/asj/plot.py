@@ -17,6 +17,7 @@ from .matches import Matches
 _RAMP = ("#f4b00c", "#fb8b09", "#f9653b", "#e44a65", "#c63983", "#a1309a", "#772ba7", "#4a27a8", "#08259b")
 _SURE = 100  # -log10 NFA
 _LEGEND = 1.7, 0.36  # inches
+_CONTRAST = 0.45  # of a pale photograph, towards white: dark enough to see the room, light enough for the colours
 _WHEEL = (
     "#e23439", "#c85d02", "#ab7302", "#928103", "#6c8e03", "#059a46", "#07957c", "#009298", "#098db2", "#0683df", "#616bfa", "#9657e8",
     "#bb46c3",
@@ -52,22 +53,22 @@ def _legend(axes: Any, colours: Any) -> None:
     bar.set_xlabel("log10 NFA", fontsize=6, labelpad=0)
 
 
-def plot(image: ArrayLike, features: Features, axes: Any = None, legend: bool = True) -> Any:
-    """Junctions as dots and branches to their ends over the image, from orange (barely) to dark blue (log10 NFA of -100 and less), which
-    the `legend` says where there is room for it.
+def plot(image: ArrayLike, features: Features, axes: Any = None, legend: bool = True, pale: bool = True) -> Any:
+    """Junctions as dots and branches to their ends over the image, each from orange (barely) to dark blue (log10 NFA of -100 and less),
+    which the `legend` says where there is room for it; the surest lie on top.
 
-    Returns matplotlib's axes.
+    The image is `pale` and grey, as in asj-cli's plots; otherwise in its own colours, on which dark ones of the branches may be hard to
+    see. Returns matplotlib's axes.
     """
     colours = extra("matplotlib.colors", "plot").LinearSegmentedColormap.from_list("asj", _RAMP)
     pixels = _pixels(image)
     axes = _axes(axes, pixels.shape[1], pixels.shape[0])
-    _show(axes, _colour(pixels) if pixels.ndim == 3 else pixels)
-    sure = -features.log10_nfa
+    _show(axes, _pale(pixels) if pale else _colour(pixels) if pixels.ndim == 3 else pixels)
     collection = extra("matplotlib.collections", "plot").LineCollection
-    axes.add_collection(
-        collection(list(features.segments), array=sure[features.branches["junction"]], cmap=colours, linewidths=1, clim=(0, _SURE))
-    )
-    axes.scatter(features.xy[:, 0], features.xy[:, 1], s=9, c=sure, cmap=colours, vmin=0, vmax=_SURE)
+    segments, sure = list(features.segments[::-1]), -features.branches["log10_nfa"][::-1]
+    axes.add_collection(collection(segments, array=sure, cmap=colours, linewidths=1, clim=(0, _SURE)))
+    x, y = features.xy[::-1].T
+    axes.scatter(x, y, s=9, c=-features.log10_nfa[::-1], cmap=colours, vmin=0, vmax=_SURE)
     if legend:
         _legend(axes, colours)
     return axes
@@ -109,6 +110,16 @@ def _hues(x: NDArray[Any]) -> NDArray[np.float64]:
     hues = np.empty(len(x))
     hues[np.argsort(x, kind="stable")] = np.arange(len(x)) * _TURN % 1
     return hues
+
+
+def _pale(pixels: Any) -> Any:
+    """Grey, BT.601, and nearer to white.
+
+    >>> _pale(np.array([[[0, 0, 0], [255, 255, 255]]], np.uint8))[0].tolist()
+    [[140, 140, 140], [255, 255, 255]]
+    """
+    grey = _colour(pixels).astype(float) @ (0.299, 0.587, 0.114)
+    return np.repeat(np.rint(255 - _CONTRAST * (255 - grey)).astype(np.uint8)[:, :, None], 3, 2)
 
 
 def _pixels(image: ArrayLike) -> Any:
