@@ -34,7 +34,7 @@
 #define SQUARE (4 * ASJ_DEGREE)
 #define SHORTEST_FOCAL 1.2           /* in units of half the longer side */
 #define LONGEST_FOCAL 8.0
-#define FOCAL_SPREAD 0.3
+#define FOCAL_SPREAD 0.25
 #define DIRECTION_SD (0.3 * ASJ_DEGREE)
 #define FOCAL_SD 0.05                /* relative: a focal length known worse than this is none */
 #define FREE 4                       /* lines to define a frame without a focal length */
@@ -87,6 +87,13 @@ static void prepare(const asj_vote_search *s, double focal, double most, frame_s
     }
 }
 
+/* What a focal length that is not given costs. */
+static double unusual(const frame_search *f, double focal)
+{
+    const double off = f->focal > 0 ? 0 : log(focal / ASJ_USUAL_FOCAL) / FOCAL_SPREAD;
+    return 0.5 * off * off;
+}
+
 /* Of the three points together. */
 static void judge(const frame_search *f, trial *t)
 {
@@ -103,8 +110,7 @@ static void judge(const frame_search *f, trial *t)
         t->level = nfa < t->log_nfa ? level : t->level;
         t->log_nfa = fmin(t->log_nfa, nfa);
     }
-    const double unusual = f->focal > 0 ? 0 : log(t->focal / ASJ_USUAL_FOCAL) / FOCAL_SPREAD;
-    t->log_nfa += 0.5 * unusual * unusual;
+    t->log_nfa += unusual(f, t->focal);
 }
 
 /* Of one of them, the others and the focal length known. */
@@ -300,7 +306,7 @@ static asj_frame describe(const frame_search *f, trial *t)
         frame.count += frame.points[a].log_nfa <= f->most;
     }
     frame.log_nfa = judge_given(f, frame.points, 0, 1, 2) + fmin(0, judge_given(f, frame.points, 1, 1, f->free - 2)) +
-                    fmin(0, judge_given(f, frame.points, 2, 1, 0));
+                    fmin(0, judge_given(f, frame.points, 2, 1, 0)) + unusual(f, t->focal);
     if (frame.count < 2 || !(t->log_nfa <= f->most) || !(judge_given(f, frame.points, 1, 2, f->free - 2) <= f->most) ||
         (!(f->focal > 0) && focal_sd(&frame) > FOCAL_SD))
         frame.count = 0;
