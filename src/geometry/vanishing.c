@@ -11,7 +11,6 @@
 #include "core/most_junctions.h"
 #include "core/number_text.h"
 #include "core/reserved.h"
-#include "core/sort.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -40,7 +39,7 @@ static void fill(const asj_vote *at, const double direction[3], const asj_camera
     out->branch_count = (uint32_t)at->votes;
 }
 
-static void tell_frame(const asj_frame *f, const asj_camera *camera, asj_vanishing_points *result)
+static void tell_frame(const asj_vanishing_frame *f, const asj_camera *camera, asj_vanishing_points *result)
 {
     result->count = f->count;
     for (int32_t a = 0; a < f->count; a++)
@@ -62,7 +61,7 @@ static void tell_points(asj_vote *points, int32_t found, int32_t given, const as
  * They are free to lie anywhere, which their NFA counts, but each is where it has most lines. (Presets default and match of 116
  * rendered views and 14 video frames: beside right frames points have up to 1.41 times the log NFA, beside three wrong ones 2.0,
  * 2.1 and 4.4.) */
-static int32_t explain_more(const asj_vote *points, int32_t found, const asj_frame *f)
+static int32_t explain_more(const asj_vote *points, int32_t found, const asj_vanishing_frame *f)
 {
     double sum = 0;
     for (int32_t k = 0; k < found && k < ASJ_MOST_VANISHING; k++)
@@ -76,7 +75,7 @@ static asj_status answer(asj_context *context, asj_vote_search *s, const asj_van
     const int32_t given = options->camera.fx > 0;
     const double most = log(options->epsilon);
     asj_vote points[ASJ_VOTE_POINTS];
-    asj_frame f;
+    asj_vanishing_frame f;
     const asj_status status = asj_find_frame(context, s, given ? 1 : 0, most, &f);
     if (status != ASJ_OK)
         return status;

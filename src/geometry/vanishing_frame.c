@@ -10,8 +10,10 @@
  *     NFA = tests B(n - d, k - d, 3 p) / w,     tests = 3 C(n, d) for each TAU,     w = exp(-(log f/f0)^2 / (2 FOCAL_SPREAD^2))
  *
  * frames as good as that, where w <= 1 counts frames of unusual focal lengths, f0 the longer side, as if there were more of them
- * (f = 1 where it is given). A point of the frame is told when chance brings fewer than epsilon with so many votes to the line that
- * the frame leaves it on, where one more branch defines it:
+ * (w = 1 where it is given). Nor may the surest point alone be what is meant: without its lines the other two must be no chance,
+ * either, with d - 2 lines to define them. And a focal length that is found must be known to FOCAL_SD. A point of the frame is told
+ * when chance brings fewer than epsilon with so many votes to the line that the frame leaves it on, where one more branch defines
+ * it:
  *
  *     NFA = n B(n - 1, k - 1, p) for each TAU.
  *
@@ -21,7 +23,6 @@
  * (d x g)' dw - l2 d2 / f dlog f. */
 #include "vanishing_frame.h"
 #include "core/angle.h"
-#include "core/sort.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -164,9 +165,10 @@ static int32_t frame_of(const frame_search *f, const double p[3], const double q
 /* Keeps the best FOLLOWED in order; of equals the first. */
 static void keep(trial *best, int32_t *count, const trial *t)
 {
-    int32_t at = *count < FOLLOWED ? (*count)++ : FOLLOWED - 1;
-    if (at == FOLLOWED - 1 && *count == FOLLOWED && best[at].log_nfa <= t->log_nfa && best[at].focal > 0)
+    if (*count == FOLLOWED && best[FOLLOWED - 1].log_nfa <= t->log_nfa)
         return;
+    *count += *count < FOLLOWED;
+    int32_t at = *count - 1;
     for (; at > 0 && best[at - 1].log_nfa > t->log_nfa; at--)
         best[at] = best[at - 1];
     best[at] = *t;
@@ -175,7 +177,6 @@ static void keep(trial *best, int32_t *count, const trial *t)
 static int32_t try_pairs(const frame_search *f, const asj_vote *points, int32_t count, trial best[FOLLOWED])
 {
     int32_t kept = 0;
-    memset(best, 0, FOLLOWED * sizeof *best);
     for (int32_t i = 0; i < count && !(f->s->watch && asj_watch_stops(f->s->watch, NULL)); i++)
         for (int32_t k = 0; k < i; k++) {
             trial t;
@@ -243,7 +244,7 @@ static void follow(const frame_search *f, trial *t)
  *     L^2 = min over w of sum |u - w x m|^2 = sum |u|^2 - b' N^-1 b,   N = sum (I - m m'),   b = sum m x u,
  *
  * and the deviation DIRECTION_SD / L. */
-static double focal_sd(const asj_frame *frame)
+static double focal_sd(const asj_vanishing_frame *frame)
 {
     double n[9] = {0}, b[3] = {0}, w[3], left = 0;
     for (int32_t a = 0; a < frame->count; a++) {
@@ -263,12 +264,6 @@ static double focal_sd(const asj_frame *frame)
         return HUGE_VAL;
     left -= asj_dot3(b, w);
     return left > 0 ? DIRECTION_SD / sqrt(left) : HUGE_VAL;
-}
-
-static int by_nfa(const void *left, const void *right)
-{
-    const asj_vote *p = left, *q = right;
-    return (p->log_nfa > q->log_nfa) - (p->log_nfa < q->log_nfa);
 }
 
 /* Of `count` of the points together, given the `given` ones before them, whose lines are not theirs, where so many lines define
@@ -293,14 +288,14 @@ static double judge_given(const frame_search *f, const asj_vote points[3], int32
     return best;
 }
 
-static asj_frame describe(const frame_search *f, trial *t)
+static asj_vanishing_frame describe(const frame_search *f, trial *t)
 {
-    asj_frame frame;
+    asj_vanishing_frame frame;
     memset(&frame, 0, sizeof frame);
     frame.focal = t->focal;
     for (int32_t a = 0; a < 3; a++)
         frame.points[a] = judge_point(f, t->axes[a], t->focal);
-    asj_sort(frame.points, 3, sizeof frame.points[0], by_nfa);
+    asj_vote_sort(frame.points, 3);
     for (int32_t a = 0; a < 3; a++) {
         asj_direction_of(frame.points[a].v, t->focal, frame.directions[a]);
         frame.count += frame.points[a].log_nfa <= f->most;
@@ -313,7 +308,7 @@ static asj_frame describe(const frame_search *f, trial *t)
     return frame;
 }
 
-static void find_frame(const frame_search *f, const asj_vote *points, int32_t count, asj_frame *frame)
+static void find_frame(const frame_search *f, const asj_vote *points, int32_t count, asj_vanishing_frame *frame)
 {
     trial trials[FOLLOWED];
     const int32_t tried = try_pairs(f, points, count, trials);
@@ -322,7 +317,7 @@ static void find_frame(const frame_search *f, const asj_vote *points, int32_t co
         follow(f, &trials[n]);
         if (!(trials[n].log_nfa < best))
             continue;
-        const asj_frame next = describe(f, &trials[n]);
+        const asj_vanishing_frame next = describe(f, &trials[n]);
         if (next.count > 0) {
             *frame = next;
             best = trials[n].log_nfa;
@@ -330,7 +325,7 @@ static void find_frame(const frame_search *f, const asj_vote *points, int32_t co
     }
 }
 
-asj_status asj_find_frame(asj_context *context, asj_vote_search *s, double focal, double most, asj_frame *frame)
+asj_status asj_find_frame(asj_context *context, asj_vote_search *s, double focal, double most, asj_vanishing_frame *frame)
 {
     asj_memory *memory = &context->memory;
     asj_vote *points = asj_allocate(memory, ASJ_VOTE_PAIRS, sizeof *points);

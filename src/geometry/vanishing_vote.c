@@ -333,6 +333,11 @@ static int by_nfa(const void *left, const void *right)
     return (p->log_nfa > q->log_nfa) - (p->log_nfa < q->log_nfa);
 }
 
+void asj_vote_sort(asj_vote *points, int32_t count)
+{
+    asj_sort(points, (size_t)count, sizeof *points, by_nfa);
+}
+
 void asj_direction_of(const double v[3], double focal, double direction[3])
 {
     direction[0] = v[0];
@@ -344,7 +349,7 @@ void asj_direction_of(const double v[3], double focal, double direction[3])
 int32_t asj_vote_distinct(asj_vote *points, int32_t count, double focal, double apart_by, int32_t most)
 {
     int32_t kept = 0;
-    asj_sort(points, (size_t)count, sizeof *points, by_nfa);
+    asj_vote_sort(points, count);
     for (int32_t k = 0; k < count && kept < most; k++) {
         double d[3], e[3], nearest = 0;
         asj_direction_of(points[k].v, focal, d);

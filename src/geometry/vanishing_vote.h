@@ -78,6 +78,9 @@ int32_t asj_vote_pairs(asj_vote_search *s, asj_vote *points);
 /* The direction of a point of rays times `focal`, of length 1. */
 void asj_direction_of(const double v[3], double focal, double direction[3]);
 
+/* The surest first. */
+void asj_vote_sort(asj_vote *points, int32_t count);
+
 /* The surest first; of those nearer than `apart` (rad), with that focal length, the surest stays, and `most` in all. Returns how
  * many stay. */
 int32_t asj_vote_distinct(asj_vote *points, int32_t count, double focal, double apart, int32_t most);

@@ -26,8 +26,9 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsa
 int32_t asj_looks_may_close(const asj_match_result *own);
 
 /* .. and is what such a look accepts the answer? Where the images have chance or too little it is. Otherwise it is when it has so
- * much more evidence, or pictures that agree so much better, that it does not matter which one they had in front; of rivals also
- * when it is one of them, and of a motion that stays open when they allow it. */
+ * much more evidence, or pictures that agree so much better, that it does not matter which one they had in front; when it is the
+ * images' pose, known better and from much more evidence; of rivals also when it is one of them, and of a motion that stays open
+ * when they allow it. */
 int32_t asj_looks_close(const asj_match_result *own, const asj_match_result *other);
 
 /* Do the images leave a motion open that the upsampled ones may settle, even if the images have no match? */
