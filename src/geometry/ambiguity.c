@@ -61,12 +61,12 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
         const asj_model *rival = &e->finalists[n];
         if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
-        const double contrary = asj_compare_with(e, rival), nfa = asj_estimation_log10_nfa(e, rival);
-        const double share = nfa / to_compare(e, m);
-        const int32_t doubtful = asj_votes_against_first(e, contrary) > DOUBT;
-        if (contrary > (doubtful ? ASJ_CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
-            !asj_is_contradicted(e, best, n, contrary) &&
-            !(nfa > ASJ_SURE_RIVAL && asj_pictures_disagree_with_other(e, nfa))) {
+        const asj_comparison c = asj_compare_with(e, rival);
+        const double nfa = asj_estimation_log10_nfa(e, rival), share = nfa / to_compare(e, m);
+        const int32_t doubtful = c.votes_against_first > DOUBT;
+        if (c.contrary > (doubtful ? ASJ_CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
+            !asj_is_contradicted(e, best, n, &c) &&
+            !(nfa > ASJ_SURE_RIVAL && asj_pictures_disagree(e, e->other.agreement, nfa))) {
             second = n;
             *doubt = doubtful;
         }

@@ -177,7 +177,7 @@ static int32_t has_open_focal(const asj_estimation *e, int32_t number)
     return asj_has_found_focal(e, number) && !e->focal.is_known;
 }
 
-/* All but its pose; the probabilities of candidates are in the scratch then. */
+/* All but its pose. */
 static void describe(asj_estimation *e, int32_t number, asj_geometry *result)
 {
     const asj_model *m = &e->finalists[number];
@@ -196,34 +196,32 @@ static int32_t is_open(const asj_estimation *e, int32_t number, const asj_geomet
            (has_open_focal(e, number) && e->options->model == ASJ_GEOMETRY_ESSENTIAL);
 }
 
-/* The probabilities in the scratch stay those of the best one. */
 static void describe_rival(asj_estimation *e, int32_t number, asj_geometry *result)
 {
     asj_model *m = &e->finalists[number];
     result->has_rival = 1;
     result->rival_log10_nfa = asj_estimation_log10_nfa(e, m);
     if (m->kind == ASJ_GEOMETRY_ESSENTIAL)
-        find_motion(e, m, e->other, result->rival_rotation, result->rival_translation);
+        find_motion(e, m, e->other.probability, result->rival_rotation, result->rival_translation);
     else if (asj_model_only_turns(m))
         memcpy(result->rival_rotation, m->rotation, sizeof result->rival_rotation);
 }
 
-/* Where all that a motion has matched repeats, another one explains it as well (period.c), whatever evidence that has. The
- * probabilities in the scratch stay those of the best one. */
+/* Where all that a motion has matched repeats, another one explains it as well (period.c), whatever evidence that has. The best one
+ * is e->first, and stays it. */
 static asj_status doubt_what_repeats(asj_estimation *e, int32_t best, asj_geometry *result)
 {
     const asj_model *m = &e->finalists[best];
     asj_model shifted;
     const int32_t found = m->kind == ASJ_GEOMETRY_ESSENTIAL
-                              ? asj_find_period(&e->context->memory, &e->set, m, e->scratch.probability, &shifted) : 0;
+                              ? asj_find_period(&e->context->memory, &e->set, m, e->first.probability, &shifted) : 0;
     if (found < 0)
         return asj_fail(e->context, ASJ_ERROR_MEMORY, "no memory for what repeats");
     if (found == 0)
         return ASJ_OK;
     asj_adjust(&e->set, &shifted, SHIFTED_ROUNDS, &e->scratch);
     shifted.evidence = asj_log_evidence(&e->set, &shifted, &e->scratch);
-    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
-    if (shifted.evidence > -HUGE_VAL && asj_contradicts(e, &shifted))
+    if (shifted.evidence > -HUGE_VAL && asj_compare_with(e, &shifted).against_other > 1)
         return ASJ_OK;
     result->status = ASJ_GEOMETRY_AMBIGUOUS;
     if (shifted.evidence > -HUGE_VAL) {
@@ -246,14 +244,14 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     const int32_t second = asj_strongest_rival(e, best, &doubt);
     if (asj_watch_end(e->set.watch) != ASJ_OK)
         return ASJ_ERROR_CANCELLED; /* rivals that nobody has looked at */
-    const asj_agreement agreement = asj_agreement_of_first(e, &e->finalists[best]);
+    const asj_agreement agreement = asj_told_agreement(e, &e->finalists[best]);
     result->picture_agreement = agreement.share;
     result->picture_knowledge = agreement.known;
     if (second >= 0)
         describe_rival(e, second, result);
     if (result->log10_nfa > log10(e->options->epsilon))
-        result->log10_nfa += asj_estimation_log10_agreement(e);
-    if (result->log10_nfa > log10(e->options->epsilon) || asj_pictures_disagree_with_first(e, result->log10_nfa))
+        result->log10_nfa += asj_estimation_log10_agreement(e->first.agreement);
+    if (result->log10_nfa > log10(e->options->epsilon) || asj_pictures_disagree(e, e->first.agreement, result->log10_nfa))
         return ASJ_OK;
     result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;
     if (second >= 0 && asj_is_ambiguous(e, best, second, doubt, result->inliers))

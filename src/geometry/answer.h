@@ -6,8 +6,8 @@
 #include "estimation.h"
 #include "judge.h"
 
-/* judge: NULL, or written where the geometry is accepted. Probabilities of its candidates are in e->scratch then, unless it is by
- * chance. Errors: CANCELLED, MEMORY. */
+/* judge: NULL, or written where the geometry is accepted. What is told is e->first then, with the probabilities of candidates,
+ * unless nothing was found. Errors: CANCELLED, MEMORY. */
 asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result);
 
 #endif

@@ -67,84 +67,70 @@ static void find_elsewhere(const asj_estimation *e, int32_t side, const double *
         }
 }
 
-/* How much of the second geometry's matches contradicts the first one's: it gives another partner to a place that the first one has
+/* How much of the other geometry's matches contradicts the first one's: it gives another partner to a place that the first one has
  * matched, in either image, and that the first one does not hold for nearly as likely. As a part of all of them. A partner within
  * SAME_THING is no other one: a corner of a frame has the frame's inner corner beside it, and a motion that is a little off takes
  * the one for the other. (229 pairs of rendered rooms, two seeds: 289 accepted with 0 px, 309 with 8, 315 with 10; of 97 unrelated
  * pairs, four seeds, none with 10 and 5 of 388 with 12.) */
-static double contradiction(asj_estimation *e, const asj_model *second)
+static double contradiction(const asj_estimation *e)
 {
-    const double *mine = e->scratch.probability;
+    const double *first = e->first.probability, *other = e->other.probability;
     double against = 0, all = 0;
-    asj_probabilities(&e->set, &second->view, 1, &e->scratch.score, e->other);
     for (int32_t k = 0; k < e->set.count; k++) {
-        against += e->other[k] * fmax(0, fmin(1, e->elsewhere[k]) - mine[k]);
-        all += e->other[k];
+        against += other[k] * fmax(0, fmin(1, e->elsewhere[k]) - first[k]);
+        all += other[k];
     }
     return all > 0 ? against / all : 0;
 }
 
-/* How much pictures in colours agree better with look `first` than with the other one. (Grey levels alone: of 24 grey facades of
- * equal windows with stains of 10 levels one was accepted shifted by a window.) */
-static double better(const asj_estimation *e, int32_t first)
+/* How much better the pictures agree with `one` than with `two`, in colours. (Grey levels alone: of 24 grey facades of equal
+ * windows with stains of 10 levels one was accepted shifted by a window.) */
+static double better(const asj_estimation *e, asj_agreement one, asj_agreement two)
 {
-    if (!e->pictures || e->pictures->of[0].channel_count < ASJ_MOST_CHANNELS)
+    if (e->pictures->of[0].channel_count < ASJ_MOST_CHANNELS)
         return 0;
-    return BETTER * fmax(0, e->agreement[first].share - e->agreement[1 - first].share - AS_GOOD);
+    return BETTER * fmax(0, one.share - two.share - AS_GOOD);
 }
 
-/* How much colours and pictures speak against the second of two geometries, with these probabilities: above 1 they contradict it.
- * first_look: of the first one. contrary: how much of the matches contradicts the other one. Of two that have matched nearly the
- * same, pictures only tell which has its planes where they are. */
-static double against(const asj_estimation *e, const double *first, const double *second, int32_t first_look, double contrary,
-                      double agreement)
+/* Adds what the pictures say. Of two that have matched nearly the same they only tell which has its planes where they are. */
+static void add_pictures(const asj_estimation *e, asj_comparison *c)
 {
-    const double colours = e->set.has_colours ? asj_colours_against(&e->set, first, second, e->vote) : 0;
-    if (!e->pictures || !(contrary > CONTRARY_SEEN))
-        return colours;
-    const asj_look *of_first = &e->pictures->looks[first_look], *of_second = &e->pictures->looks[1 - first_look];
-    const double seen = asj_pictures_against(of_first, of_second) + agreement;
-    return colours + (asj_inliers(&e->set, e->scratch.probability) < ASJ_FEW_MATCHES ? seen / OF_FEW : seen);
+    if (!e->pictures || !(c->contrary > CONTRARY_SEEN))
+        return;
+    const asj_look *first = &e->pictures->looks[0], *other = &e->pictures->looks[1];
+    const double beside = asj_inliers(&e->set, e->first.probability) < ASJ_FEW_MATCHES ? OF_FEW : 1;
+    const double against_first = asj_pictures_against(other, first);
+    c->against_other += (asj_pictures_against(first, other) + better(e, e->first.agreement, e->other.agreement)) / beside;
+    c->against_first += (against_first + better(e, e->other.agreement, e->first.agreement)) / beside;
+    c->votes_against_first += against_first / beside;
 }
 
-double asj_against_other(const asj_estimation *e, double contrary)
+/* Fills in what is compared of a geometry; look: 0 of the first one, 1 of the other. */
+static void look_at(asj_estimation *e, const asj_model *m, int32_t look, asj_compared *as)
 {
-    return against(e, e->scratch.probability, e->other, 0, contrary, better(e, 0));
-}
-
-double asj_against_first(const asj_estimation *e, double contrary)
-{
-    return against(e, e->other, e->scratch.probability, 1, contrary, better(e, 1));
-}
-
-double asj_votes_against_first(const asj_estimation *e, double contrary)
-{
-    return against(e, e->other, e->scratch.probability, 1, contrary, 0);
-}
-
-/* Look 0 is of the geometry that others are compared with, 1 of the other. */
-static void look_at(asj_estimation *e, const asj_model *m, const double *probability, int32_t look)
-{
+    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, as->probability);
     if (e->pictures) {
-        asj_pictures_look(e->pictures, &e->set, &m->view, probability, &e->pictures->looks[look]);
-        e->agreement[look] = asj_pictures_agreement(&e->pictures->looks[look]);
+        asj_pictures_look(e->pictures, &e->set, &m->view, as->probability, &e->pictures->looks[look]);
+        as->agreement = asj_pictures_agreement(&e->pictures->looks[look]);
     }
 }
 
 void asj_compare_from(asj_estimation *e, int32_t number)
 {
-    asj_probabilities(&e->set, &e->finalists[number].view, 1, &e->scratch.score, e->scratch.probability);
+    look_at(e, &e->finalists[number], 0, &e->first);
     memset(e->elsewhere, 0, (size_t)e->set.count * sizeof *e->elsewhere);
     for (int32_t side = 0; side < 2; side++)
-        find_elsewhere(e, side, e->scratch.probability);
-    look_at(e, &e->finalists[number], e->scratch.probability, 0);
+        find_elsewhere(e, side, e->first.probability);
 }
 
-double asj_compare_with(asj_estimation *e, const asj_model *other)
+asj_comparison asj_compare_with(asj_estimation *e, const asj_model *other)
 {
-    const double contrary = contradiction(e, other);
-    look_at(e, other, e->other, 1);
-    return contrary;
+    look_at(e, other, 1, &e->other);
+    const double colours = e->set.has_colours
+                               ? asj_colours_against(&e->set, e->first.probability, e->other.probability, e->vote) : 0;
+    asj_comparison c = {contradiction(e), colours, -colours, -colours};
+    add_pictures(e, &c);
+    return c;
 }
 
 int32_t asj_finalist_turns_over(const asj_estimation *e, int32_t number)
@@ -159,37 +145,20 @@ static int32_t is_overturned(const asj_estimation *e, int32_t best, int32_t riva
            !asj_finalist_turns_over(e, best);
 }
 
-int32_t asj_is_contradicted(const asj_estimation *e, int32_t best, int32_t rival, double contrary)
+int32_t asj_is_contradicted(const asj_estimation *e, int32_t best, int32_t rival, const asj_comparison *comparison)
 {
-    return asj_against_other(e, contrary) > 1 || is_overturned(e, best, rival);
+    return comparison->against_other > 1 || is_overturned(e, best, rival);
 }
 
-int32_t asj_contradicts(asj_estimation *e, const asj_model *other)
-{
-    const double contrary = asj_compare_with(e, other);
-    return asj_against_other(e, contrary) > 1;
-}
-
-/* Does look number `look`, of a geometry of the NFA 10^log10_nfa, disagree? */
-static int32_t disagrees(const asj_estimation *e, int32_t look, double log10_nfa)
+int32_t asj_pictures_disagree(const asj_estimation *e, asj_agreement agreement, double log10_nfa)
 {
     const double beyond = fmax(0, MUCH - log10_nfa) / (MUCH - VERY_MUCH);
-    return e->agreement[look].share < fmax(LEAST_AGREEMENT, AGREEMENT - beyond * AGREEMENT_GOES_DOWN);
+    return e->pictures && agreement.share < fmax(LEAST_AGREEMENT, AGREEMENT - beyond * AGREEMENT_GOES_DOWN);
 }
 
-int32_t asj_pictures_disagree_with_first(const asj_estimation *e, double log10_nfa)
-{
-    return e->pictures && disagrees(e, 0, log10_nfa);
-}
-
-int32_t asj_pictures_disagree_with_other(const asj_estimation *e, double log10_nfa)
-{
-    return e->pictures && disagrees(e, 1, log10_nfa);
-}
-
-asj_agreement asj_agreement_of_first(const asj_estimation *e, const asj_model *first)
+asj_agreement asj_told_agreement(const asj_estimation *e, const asj_model *first)
 {
     if (!e->pictures || first->kind == ASJ_GEOMETRY_FUNDAMENTAL)
         return (asj_agreement){0, 0};
-    return (asj_agreement){fmax(LEAST_TOLD, e->agreement[0].share), e->agreement[0].known};
+    return (asj_agreement){fmax(LEAST_TOLD, e->first.agreement.share), e->first.agreement.known};
 }

@@ -82,8 +82,9 @@ int32_t asj_estimation_counts(const asj_estimation *e, int32_t number)
     return number >= 0 && asj_estimation_log10_nfa(e, &e->finalists[number]) <= most;
 }
 
-double asj_estimation_log10_agreement(const asj_estimation *e)
+double asj_estimation_log10_agreement(asj_agreement agreement)
 {
-    const asj_agreement *a = &e->agreement[0];
-    return e->pictures && a->known > ASJ_LEAST_KNOWN ? -fmin(ASJ_MOST_BY_PICTURES, fmax(0, BY_SHARE * (a->share - UNUSUAL))) : 0;
+    if (!(agreement.known > ASJ_LEAST_KNOWN))
+        return 0;
+    return -fmin(ASJ_MOST_BY_PICTURES, fmax(0, BY_SHARE * (agreement.share - UNUSUAL)));
 }

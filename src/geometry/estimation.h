@@ -12,6 +12,12 @@
 /* The last three: with a focal length that was found. One: a camera that only turns. */
 #define ASJ_MOST_MODELS ((2 * ASJ_MOST_KINDS + 3) * ASJ_FINALISTS + 1)
 
+/* One of two geometries that are compared (contradiction.h). */
+typedef struct asj_compared {
+    double *probability;     /* of each candidate, under it */
+    asj_agreement agreement; /* of the pictures with it; 0 and 0: nobody has shown them */
+} asj_compared;
+
 /* One call. */
 typedef struct asj_estimation {
     asj_context *context;
@@ -21,11 +27,10 @@ typedef struct asj_estimation {
     int32_t count;
     int32_t again; /* 1: these were found when they were looked for once more */
     asj_adjust_scratch scratch;
-    double *other; /* probabilities under a second geometry */
-    double *elsewhere; /* contradiction.c: of each candidate, how sure its places are matched with something else */
+    asj_compared first, other; /* contradiction.h */
+    double *elsewhere; /* of each candidate: how sure `first` is that its places are matched with something else */
     double *vote;  /* colour_vote.c, contradiction.c: four numbers of each place */
-    asj_pictures *pictures; /* NULL: nobody has shown them */
-    asj_agreement agreement[2]; /* of their looks */
+    asj_pictures *pictures; /* NULL: nobody has shown them. Their looks are of `first` and of `other` */
     asj_focal_search *focal_search; /* NULL: nobody asks for it */
     asj_focal focal;
     asj_focal rotation_focal; /* the same, of a camera that only turns */
@@ -56,8 +61,8 @@ double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m);
 /* May chance be ruled out? Of what is hardly more than chance by itself that depends on the pictures, where there are some. */
 int32_t asj_estimation_counts(const asj_estimation *e, int32_t number);
 
-/* log10 of how often chance brings pictures that agree so well with the first of their looks: 0 to -ASJ_MOST_BY_PICTURES. */
+/* log10 of how often chance brings pictures that agree so well: 0 to -ASJ_MOST_BY_PICTURES. */
 #define ASJ_MOST_BY_PICTURES 3.0
-double asj_estimation_log10_agreement(const asj_estimation *e);
+double asj_estimation_log10_agreement(asj_agreement agreement);
 
 #endif

@@ -242,11 +242,13 @@ static asj_status make_scratch(asj_estimation *e, const asj_geometry_hints *hint
 {
     asj_memory *memory = &e->context->memory;
     const int32_t *count = e->set.place_count, shown = hints && hints->pictures[0].channel_count > 0;
-    e->other = asj_allocate(memory, (size_t)e->set.count, sizeof *e->other);
+    e->first.probability = asj_allocate(memory, (size_t)e->set.count, sizeof *e->first.probability);
+    e->other.probability = asj_allocate(memory, (size_t)e->set.count, sizeof *e->other.probability);
     e->elsewhere = asj_allocate(memory, (size_t)e->set.count, sizeof *e->elsewhere);
     e->vote = asj_allocate(memory, (size_t)(count[0] > count[1] ? count[0] : count[1]), 4 * sizeof *e->vote);
     e->pictures = shown ? asj_pictures_create(memory, hints->pictures, e->set.count) : NULL;
-    if (e->other && e->elsewhere && e->vote && (e->pictures || !shown) && asj_adjust_scratch_create(memory, &e->set, &e->scratch))
+    if (e->first.probability && e->other.probability && e->elsewhere && e->vote && (e->pictures || !shown) &&
+        asj_adjust_scratch_create(memory, &e->set, &e->scratch))
         return ASJ_OK;
     return asj_fail(e->context, ASJ_ERROR_MEMORY, "no memory for the geometry");
 }
@@ -255,7 +257,8 @@ static void free_estimation(asj_estimation *e)
 {
     asj_memory *memory = &e->context->memory;
     asj_adjust_scratch_free(memory, &e->scratch);
-    asj_release(memory, e->other);
+    asj_release(memory, e->first.probability);
+    asj_release(memory, e->other.probability);
     asj_release(memory, e->elsewhere);
     asj_release(memory, e->vote);
     asj_pictures_free(memory, e->pictures);
@@ -284,7 +287,7 @@ static void tell_probabilities(const asj_estimation *e, const asj_geometry *foun
     for (size_t k = 0; k < count; k++)
         probabilities[k] = 0;
     for (int32_t k = 0; k < e->set.count && told; k++)
-        probabilities[e->set.list[k].source] = e->scratch.probability[k];
+        probabilities[e->set.list[k].source] = e->first.probability[k];
 }
 
 /* Nothing is written unless it ends well. */

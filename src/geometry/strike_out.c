@@ -29,9 +29,9 @@ static void weigh(asj_estimation *e, int32_t best, double for_it[ASJ_MOST_MODELS
         if (asj_pairs_stop(&e->set, NULL) || n == best || nfa > log10(e->options->epsilon) ||
             (asj_finalist_turns_over(e, n) && !asj_finalist_turns_over(e, best)))
             continue;
-        const double contrary = asj_compare_with(e, m), against = asj_against_first(e, contrary);
-        if (against > OVERRULED && !asj_pictures_disagree_with_other(e, nfa))
-            for_it[n] = against;
+        const asj_comparison c = asj_compare_with(e, m);
+        if (c.against_first > OVERRULED && !asj_pictures_disagree(e, e->other.agreement, nfa))
+            for_it[n] = c.against_first;
     }
 }
 
@@ -42,10 +42,7 @@ static void strike(asj_estimation *e, int32_t chosen)
     asj_compare_from(e, chosen);
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++) {
         asj_model *m = &e->finalists[n];
-        if (!(m->evidence > c->evidence))
-            continue;
-        const double contrary = asj_compare_with(e, m);
-        if (asj_against_other(e, contrary) > 1)
+        if (m->evidence > c->evidence && asj_compare_with(e, m).against_other > 1)
             m->evidence = m->peak = -HUGE_VAL;
     }
 }
@@ -59,8 +56,8 @@ static void strike_rivals(asj_estimation *e)
     asj_compare_from(e, best);
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++)
         if (n != best && n != e->focal_at && e->finalists[n].evidence > -HUGE_VAL) {
-            const double contrary = asj_compare_with(e, &e->finalists[n]);
-            if (contrary > ASJ_CONTRARY_ALIKE && asj_is_contradicted(e, best, n, contrary))
+            const asj_comparison c = asj_compare_with(e, &e->finalists[n]);
+            if (c.contrary > ASJ_CONTRARY_ALIKE && asj_is_contradicted(e, best, n, &c))
                 e->finalists[n].evidence = e->finalists[n].peak = -HUGE_VAL;
         }
 }
@@ -140,7 +137,7 @@ static void strike_best(asj_estimation *e, int32_t kind)
     for (int32_t n = best_that_counts(e, kind); n >= 0 && !asj_pairs_stop(&e->set, NULL); n = best_that_counts(e, kind)) {
         asj_model *m = &e->finalists[n];
         asj_compare_from(e, n);
-        if (!asj_pictures_disagree_with_first(e, asj_estimation_log10_nfa(e, m)))
+        if (!asj_pictures_disagree(e, e->first.agreement, asj_estimation_log10_nfa(e, m)))
             return;
         m->evidence = m->peak = -HUGE_VAL;
     }

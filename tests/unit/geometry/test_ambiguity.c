@@ -62,13 +62,13 @@ static asj_estimation *prepare(asj_context *context, double shift, asj_geometry_
     e->focal_at = -1;
     assert_int_equal(asj_pairs_create(context, list, 2 * PLACES, NULL, options, &e->set), ASJ_OK);
     assert_true(asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch));
-    e->other = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->other);
+    e->first.probability = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->first.probability);
+    e->other.probability = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->other.probability);
     e->elsewhere = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->elsewhere);
     e->vote = asj_allocate(&context->memory, 2 * PLACES, 4 * sizeof *e->vote);
-    assert_true(e->other && e->elsewhere && e->vote);
+    assert_true(e->first.probability && e->other.probability && e->elsewhere && e->vote);
     e->finalists[e->count++] = shifted_by(0);
     e->finalists[e->count++] = shifted_by(shift);
-    asj_probabilities(&e->set, &e->finalists[0].view, 1, &e->scratch.score, e->scratch.probability);
     return e;
 }
 
@@ -80,7 +80,8 @@ static void release(asj_context *context, asj_estimation *e)
         asj_pyramid_free(&context->memory, &pyramids[k / ASJ_MOST_CHANNELS][k % ASJ_MOST_CHANNELS]);
     asj_pictures_free(&context->memory, e->pictures);
     asj_adjust_scratch_free(&context->memory, &e->scratch);
-    asj_release(&context->memory, e->other);
+    asj_release(&context->memory, e->first.probability);
+    asj_release(&context->memory, e->other.probability);
     asj_release(&context->memory, e->elsewhere);
     asj_release(&context->memory, e->vote);
     asj_pairs_free(&context->memory, &e->set);
@@ -235,7 +236,7 @@ static void test_wrong_one_alone_is_struck_out(void **state)
         e->count = 1;
         assert_int_equal(asj_strike_out(e), ASJ_OK);
         print_message("shift %.0f, contrast %d: agreement %.2f\n", cases[k].shift, cases[k].contrast,
-                      asj_agreement_of_first(e, &e->finalists[0]).share);
+                      asj_told_agreement(e, &e->finalists[0]).share);
         assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), cases[k].stays ? 0 : -1);
         release(context, e);
     }
@@ -251,16 +252,15 @@ static void test_agreement_is_unusual(void **state)
     const int32_t contrast = 60;
     asj_geometry_options options;
     asj_estimation *e = prepare(context, TILE, &options);
-    e->agreement[0] = (asj_agreement){0.9, 20};
-    assert_true(asj_estimation_log10_agreement(e) == 0); /* nobody has shown pictures */
+    assert_true(asj_estimation_log10_agreement(e->first.agreement) == 0); /* nobody has shown pictures */
     for (double evidence = 5; evidence < 25; evidence += 1) {
         e->finalists[0].evidence = evidence;
         assert_int_equal(asj_estimation_counts(e, 0), asj_estimation_log10_nfa(e, &e->finalists[0]) <= -7);
     }
     show(context, e, 1, &contrast);
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
-        e->agreement[0] = (asj_agreement){cases[k].share, cases[k].known};
-        assert_true(fabs(asj_estimation_log10_agreement(e) + cases[k].decades) < 1e-9);
+        const asj_agreement agreement = {cases[k].share, cases[k].known};
+        assert_true(fabs(asj_estimation_log10_agreement(agreement) + cases[k].decades) < 1e-9);
     }
     for (double evidence = 5; evidence < 25; evidence += 1) {
         e->finalists[0].evidence = evidence;
