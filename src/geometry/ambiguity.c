@@ -59,7 +59,7 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
     asj_compare_from(e, best);
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++) {
         const asj_model *rival = &e->finalists[n];
-        if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
+        if (n == best || !asj_model_stands(rival) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
         const asj_comparison c = asj_compare_with(e, rival);
         const double nfa = asj_estimation_log10_nfa(e, rival), share = nfa / to_compare(e, m);

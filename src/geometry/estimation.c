@@ -20,7 +20,7 @@ int32_t asj_estimation_best(const asj_estimation *e, int32_t kind)
 {
     int32_t best = -1;
     for (int32_t k = 0; k < e->count; k++)
-        if ((kind == ASJ_GEOMETRY_AUTO || e->finalists[k].kind == kind) && e->finalists[k].evidence > -HUGE_VAL &&
+        if ((kind == ASJ_GEOMETRY_AUTO || e->finalists[k].kind == kind) && asj_model_stands(&e->finalists[k]) &&
             (best < 0 || e->finalists[k].evidence > e->finalists[best].evidence))
             best = k;
     return best;
@@ -29,7 +29,7 @@ int32_t asj_estimation_best(const asj_estimation *e, int32_t kind)
 int32_t asj_estimation_best_rotation(const asj_estimation *e)
 {
     for (int32_t k = 0; k < e->count; k++)
-        if (asj_model_only_turns(&e->finalists[k]) && e->finalists[k].evidence > -HUGE_VAL)
+        if (asj_model_only_turns(&e->finalists[k]) && asj_model_stands(&e->finalists[k]))
             return k; /* there is one */
     return -1;
 }

@@ -49,7 +49,7 @@ asj_status asj_estimation_settle(const asj_estimation *e, asj_model *model);
 /* Is a finalist's focal length found? */
 int32_t asj_has_found_focal(const asj_estimation *e, int32_t number);
 
-/* The finalist with the largest evidence, of a kind or of any (ASJ_GEOMETRY_AUTO); -1 when there is none. */
+/* The finalist with the largest evidence of those that stand, of a kind or of any (ASJ_GEOMETRY_AUTO); -1 when there is none. */
 int32_t asj_estimation_best(const asj_estimation *e, int32_t kind);
 
 /* .. of a camera that only turns. */

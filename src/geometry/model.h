@@ -7,7 +7,17 @@
 
 #include <asj/geometry.h>
 
+#include <math.h>
+
 #define ASJ_MODEL_PARAMETERS (5 + 3 * ASJ_MOST_PLANES)
+
+/* Why a finalist is no answer, and no rival of one, whatever its evidence: strike_out.c. */
+typedef enum asj_struck {
+    ASJ_NOT_STRUCK,
+    ASJ_STRUCK_BY_PICTURES,  /* they disagree with it by themselves */
+    ASJ_STRUCK_FOR_ANOTHER,  /* colours and pictures contradict it in favour of one with less evidence */
+    ASJ_STRUCK_AS_RIVAL      /* it contradicts the best one, and is contradicted in favour of that */
+} asj_struck;
 
 typedef struct asj_model {
     int32_t kind;             /* ASJ_GEOMETRY_ESSENTIAL, _FUNDAMENTAL or _HOMOGRAPHY */
@@ -24,7 +34,14 @@ typedef struct asj_model {
     double peak;              /* the evidence by Laplace's method, from the peak alone (asj_settle() has climbed to it) */
     double covariance[25];    /* of the motion's parameters, once asj_settle() has seen it: 5 x 5, or 3 x 3 of a turn */
     int32_t settled;
+    asj_struck struck;
 } asj_model;
+
+/* May it be an answer, or a rival of one? */
+static inline int32_t asj_model_stands(const asj_model *m)
+{
+    return m->evidence > -HUGE_VAL && m->struck == ASJ_NOT_STRUCK;
+}
 
 /* A homography K2 R K1^-1, which has three parameters. */
 static inline int32_t asj_model_only_turns(const asj_model *m)

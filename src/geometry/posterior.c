@@ -396,7 +396,7 @@ double asj_motion_covariance(const asj_pairs *set, const asj_model *models, int3
     memcpy(covariance, m->covariance, sizeof m->covariance);
     for (int32_t n = 0; n < count; n++) {
         const asj_model *o = &models[n];
-        if (n == best || o->kind != m->kind || asj_is_within(m, o))
+        if (n == best || o->kind != m->kind || o->struck != ASJ_NOT_STRUCK || asj_is_within(m, o))
             continue;
         const int32_t in_reach = difference(m, o, at), is_near = in_reach && size_of(at) < BESIDE * BESIDE;
         const double weight = weight_beside(set, m, o, is_near);

@@ -12,8 +12,8 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
 /* Essential matrices: is the other motion one of those that the settled one stands for? */
 int32_t asj_is_within(const asj_model *settled, const asj_model *other);
 
-/* Covariance of the motion's five parameters: that of the best model, and what other ones of its kind are likely besides. Returns
- * the largest standard deviation of a combination of them, rad. */
+/* Covariance of the motion's five parameters: that of the best model, and what others of its kind that stand are likely besides.
+ * Returns the largest standard deviation of a combination of them, rad. */
 double asj_motion_covariance(const asj_pairs *set, const asj_model *models, int32_t count, int32_t best, double covariance[25]);
 
 #endif

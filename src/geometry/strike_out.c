@@ -26,7 +26,7 @@ static void weigh(asj_estimation *e, int32_t best, double for_it[ASJ_MOST_MODELS
         const asj_model *m = &e->finalists[n];
         const double nfa = asj_estimation_log10_nfa(e, m);
         for_it[n] = 0;
-        if (asj_pairs_stop(&e->set, NULL) || n == best || nfa > log10(e->options->epsilon) ||
+        if (asj_pairs_stop(&e->set, NULL) || n == best || !asj_model_stands(m) || nfa > log10(e->options->epsilon) ||
             (asj_finalist_turns_over(e, n) && !asj_finalist_turns_over(e, best)))
             continue;
         const asj_comparison c = asj_compare_with(e, m);
@@ -42,8 +42,8 @@ static void strike(asj_estimation *e, int32_t chosen)
     asj_compare_from(e, chosen);
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++) {
         asj_model *m = &e->finalists[n];
-        if (m->evidence > c->evidence && asj_compare_with(e, m).against_other > 1)
-            m->evidence = m->peak = -HUGE_VAL;
+        if (asj_model_stands(m) && m->evidence > c->evidence && asj_compare_with(e, m).against_other > 1)
+            m->struck = ASJ_STRUCK_FOR_ANOTHER;
     }
 }
 
@@ -55,10 +55,10 @@ static void strike_rivals(asj_estimation *e)
         return;
     asj_compare_from(e, best);
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++)
-        if (n != best && n != e->focal_at && e->finalists[n].evidence > -HUGE_VAL) {
+        if (n != best && n != e->focal_at && asj_model_stands(&e->finalists[n])) {
             const asj_comparison c = asj_compare_with(e, &e->finalists[n]);
             if (c.contrary > ASJ_CONTRARY_ALIKE && asj_is_contradicted(e, best, n, &c))
-                e->finalists[n].evidence = e->finalists[n].peak = -HUGE_VAL;
+                e->finalists[n].struck = ASJ_STRUCK_AS_RIVAL;
         }
 }
 
@@ -75,12 +75,10 @@ static asj_status focus_back(asj_estimation *e, int32_t chosen, const asj_model 
  * then: what is not believed itself contradicts nothing. */
 static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stands)
 {
-    double evidence[ASJ_MOST_MODELS], peak[ASJ_MOST_MODELS];
+    asj_struck struck[ASJ_MOST_MODELS];
     asj_status status = ASJ_OK;
-    for (int32_t n = 0; n < e->count; n++) {
-        evidence[n] = e->finalists[n].evidence;
-        peak[n] = e->finalists[n].peak;
-    }
+    for (int32_t n = 0; n < e->count; n++)
+        struck[n] = e->finalists[n].struck;
     const asj_focal focal = e->focal;
     const asj_model before = e->finalists[chosen];
     const int32_t focal_at = e->focal_at;
@@ -98,10 +96,7 @@ static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stand
     }
     *stands = asj_estimation_best(e, ASJ_GEOMETRY_AUTO) == chosen;
     for (int32_t n = 0; n < e->count && !*stands; n++)
-        if (n != chosen) {
-            e->finalists[n].evidence = evidence[n];
-            e->finalists[n].peak = peak[n];
-        }
+        e->finalists[n].struck = struck[n];
     return status == ASJ_OK && !*stands && e->focal_at != focal_at ? focus_back(e, chosen, &before, &focal, focal_at) : status;
 }
 
@@ -139,7 +134,7 @@ static void strike_best(asj_estimation *e, int32_t kind)
         asj_compare_from(e, n);
         if (!asj_pictures_disagree(e, e->first.agreement, asj_estimation_log10_nfa(e, m)))
             return;
-        m->evidence = m->peak = -HUGE_VAL;
+        m->struck = ASJ_STRUCK_BY_PICTURES;
     }
 }
 

@@ -4,7 +4,8 @@
 
 #include "estimation.h"
 
-/* Takes the evidence from geometries that colours and pictures contradict: what is best then is the answer. Errors: memory. */
+/* Strikes out geometries that colours and pictures contradict (asj_model.struck); what is best then is the answer, with another
+ * focal length where that is another motion's. Errors: memory. */
 asj_status asj_strike_out(asj_estimation *e);
 
 #endif

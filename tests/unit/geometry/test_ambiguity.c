@@ -204,19 +204,28 @@ static void test_pictures_of_like_tiles_say_nothing(void **state)
     assert_int_equal(rivals[1], 0);
 }
 
-/* The wrong one is in front: the right one takes its place. */
-static void test_wrong_one_in_front_is_struck_out(void **state)
+/* The wrong one is in front, by little or by so much that pictures alone are no reason against it, or behind: the right one is the
+ * answer, and what candidates say of either stays as it was. */
+static void test_wrong_one_is_struck_out(void **state)
 {
+    static const struct {
+        double evidence;
+        asj_struck struck;
+    } cases[] = {{130, ASJ_STRUCK_BY_PICTURES}, {700, ASJ_STRUCK_FOR_ANOTHER}, {90, ASJ_STRUCK_AS_RIVAL}};
     asj_context *context = ((unit_fixture *)*state)->context;
     const int32_t contrast = 60;
-    asj_geometry_options options;
-    asj_estimation *e = prepare(context, TILE, &options);
-    show(context, e, 1, &contrast);
-    e->finalists[1].evidence = 130;
-    assert_int_equal(asj_strike_out(e), ASJ_OK);
-    assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), 0);
-    assert_false(e->finalists[1].evidence > -HUGE_VAL);
-    release(context, e);
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_geometry_options options;
+        asj_estimation *e = prepare(context, TILE, &options);
+        show(context, e, 1, &contrast);
+        e->finalists[1].evidence = cases[k].evidence;
+        assert_int_equal(asj_strike_out(e), ASJ_OK);
+        assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), 0);
+        assert_int_equal(e->finalists[0].struck, ASJ_NOT_STRUCK);
+        assert_int_equal(e->finalists[1].struck, cases[k].struck);
+        assert_true(e->finalists[0].evidence == 100 && e->finalists[1].evidence == cases[k].evidence);
+        release(context, e);
+    }
 }
 
 /* A geometry needs no rival to be wrong: pictures that know something disagree, and so little evidence is not believed then. */
@@ -238,6 +247,7 @@ static void test_wrong_one_alone_is_struck_out(void **state)
         print_message("shift %.0f, contrast %d: agreement %.2f\n", cases[k].shift, cases[k].contrast,
                       asj_told_agreement(e, &e->finalists[0]).share);
         assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), cases[k].stays ? 0 : -1);
+        assert_int_equal(e->finalists[0].struck, cases[k].stays ? ASJ_NOT_STRUCK : ASJ_STRUCK_BY_PICTURES);
         release(context, e);
     }
 }
@@ -277,7 +287,7 @@ int main(void)
         cmocka_unit_test(test_sure_rival_makes_ambiguous),
         cmocka_unit_test(test_pictures_tell_tiles_from_others),
         cmocka_unit_test(test_pictures_of_like_tiles_say_nothing),
-        cmocka_unit_test(test_wrong_one_in_front_is_struck_out),
+        cmocka_unit_test(test_wrong_one_is_struck_out),
         cmocka_unit_test(test_wrong_one_alone_is_struck_out),
         cmocka_unit_test(test_agreement_is_unusual),
     };
