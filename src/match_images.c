@@ -216,7 +216,7 @@ static asj_status have_colours(const search *s, int32_t *both)
 
 static int32_t may_look_at_colours(const search *s)
 {
-    return s->options->look_at_colours && !s->detect_options->colours && asj_looks_may_close(s->best);
+    return s->options->look_at_colours && !s->detect_options->colours && asj_looks_want_other(s->best);
 }
 
 static asj_status look_with_colours(search *s, double from, double part)
@@ -231,7 +231,7 @@ static asj_status look_with_colours(search *s, double from, double part)
     if (status == ASJ_OK)
         status = look_closer(&other, &stretch, from + FIRST * part, (1 - FIRST) * part);
     memcpy(s->stage_ms, other.stage_ms, sizeof s->stage_ms);
-    const int32_t believed = status == ASJ_OK && asj_looks_close(s->best, other.best);
+    const int32_t believed = status == ASJ_OK && asj_looks_take(s->best, other.best);
     asj_match_result_free(believed ? &s->best : &other.best);
     if (believed) {
         s->best = other.best;

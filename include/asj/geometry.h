@@ -24,9 +24,10 @@ enum {
     ASJ_GEOMETRY_ACCEPTED = 1,
     ASJ_GEOMETRY_CHANCE = 2,      /* none stands out from what chance brings */
     ASJ_GEOMETRY_TOO_FEW = 3,     /* fewer than two places with candidates in either image */
-    ASJ_GEOMETRY_AMBIGUOUS = 4,   /* another one with other matches explains almost as much, or has a log10 NFA below -100 and
-                                   * two fifths of it: things that repeat; or all that is matched lies on a plane on which it
-                                   * repeats; or the images and the upsampled ones tell two motions (match.h) */
+    ASJ_GEOMETRY_AMBIGUOUS = 4,   /* another one with other matches explains almost as much, or less, but more than chance
+                                   * can (src/geometry/ambiguity.h): things that repeat; or all that is matched lies on a
+                                   * plane on which it repeats; or the images and the upsampled ones tell two motions
+                                   * (match.h) */
     ASJ_GEOMETRY_DEGENERATE = 5   /* what matches leaves it open: a camera that only turns has no translation where model essential
                                    * asks for one; or, with cameras that are known, fewer than 15 matches that tell no pose */
 };

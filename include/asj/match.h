@@ -84,7 +84,7 @@ typedef struct asj_match_options {
     int32_t upsampled_max_junctions; /* junctions of an upsampled image that take part, the most meaningful ones; 0 = all, which
                                   * takes a minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
     int32_t look_at_colours;     /* 1 = automatically: where a geometry is asked and none is accepted, or none that is sure
-                                  * (log10 NFA -35), or a motion without its pose, 8-bit colour images are looked at once more,
+                                  * (src/match/looks.c), or a motion without its pose, 8-bit colour images are looked at once more,
                                   * with asj_detect_options.colours: unrelated ones in twice the time. 1; paper 0 */
     int32_t reserved_switch;     /* zero */
     double reserved[16];         /* zero */
@@ -173,17 +173,17 @@ typedef struct asj_match_result {
  * is a candidate and how likely it is: things that repeat often differ in hue alone. Exposure and white balance may differ.
  *
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
- * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few
- * that contradict these, together with those of the first ones whose places no other match has; else the first one does. One
- * geometry judges both: that of the second one, or, where it has none or loses the pose, that of the first one; of two poses that
- * agree the surer one where the second result holds. Of two at odds the second one is told when it has 2.5 times the log10 NFA,
- * and else the one that is not upside down if the other one is (rotation[4] < 0) and has not so much more; otherwise they are
- * ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of two planes the pose is left out. Where the first one, of
- * known cameras, has rivals or leaves its motion open, the second one holds, whatever its matches, when it accepts the same pose
- * or the rival's, or another one with a log10 NFA below -35 and 1.25 times the first one's; only then where the first one has no
- * matches; and not when it accepts none, or one that is upside down, or less surely another one of a motion that was open;
- * beside a rival with a log10 NFA below -100 it needs twice the first one's (src/match/upsampled.c, upsampled_geometry.c).
- * Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
+ * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few that
+ * contradict these, together with those of the first ones whose places no other match has; else the first one does
+ * (src/match/upsampled.c). One geometry judges both; src/match/looks.c has the rules, and the numbers in them. It is that of the
+ * second one, or, where it has none or loses the pose, that of the first one; of two poses that agree it is the surer one. Of two
+ * at odds the images decide by how well they agree with each (picture_agreement), then much more evidence does, then which of them
+ * is upside down (rotation[4] < 0); otherwise they are ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of two
+ * planes the pose is left out. Where the first one, of known cameras, has rivals or leaves its motion open, the second one holds,
+ * whatever its matches, when it accepts the same pose or the rival's, or another one that is sure, with more evidence; only then
+ * where the first one has no matches; and not when it accepts none, or one that is upside down, or less surely another one of a
+ * motion that was open. Beside a rival that is sure by itself it needs much more evidence. Junctions of octave -1 alone (octaves 1)
+ * have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in

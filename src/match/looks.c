@@ -1,51 +1,19 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Two looks at the same images, two estimates of their geometry, and one answer.
  *
- * Poses are two witnesses of one motion. Where they contradict each other, the one with which the pictures agree better by
- * AGREES_BETTER (../geometry/picture_agreement.c) is right; of others evidence decides. How often, of 1083 pairs of rooms seen
- * from far apart (wide_rooms, seeds 0 to 343, 360 to 704 and 1000 to 1399; before pictures were asked):
- *   - Both accepted and at odds: one is wrong. If the upsampled images have OUTWEIGHS times the log evidence it is that of the
- *     images (3 pairs); if one of the two is upside down it is that, unless it has so much more (one pair: the upsampled images',
- *     with 1.6 times). Otherwise nothing says which, which is an ambiguous answer, with the matches that neither contradicts. Two
- *     of a plane: the plane is the answer, and its pose is open.
- *   - Both accepted, and they agree as far as they know: the surer one is the answer, where the upsampled images' matches hold
- *     (upsampled.c); otherwise that of the images is, surer or not.
- *   - The images have rivals or leave the motion open, and what the upsampled ones accept is the images' best, or that one's rival:
- *     that is the answer, whether or not matches come again, since what repeats has been matched by the period, and if there are
- *     none: chance does not bring one motion to within SAME_POSE twice. (Rooms 1000 to 1399: two more poses by the rival, one
- *     without a match, all within .4 degrees; of 188 unrelated pairs none.)
- *   - The images have rivals or leave the motion open, and the upsampled ones accept another motion with SURPASSES times the log
- *     evidence of the images' best, and SURELY: that is the answer, whether or not matches come again. Where both accept one
- *     motion the upsampled images have 2.06 times as much (median of 772 pairs; 1.27 and more in 98 of 100); where the images' best
- *     is wrong they have more than that, too, and none of its matches comes again. (20 pairs whose matches do not: 13 have so
- *     much, all within 1 degree, and of the others two are out, by 19 and 90 degrees. It accepts one more of 396 unrelated pairs,
- *     without SURELY three.) Where the images have no match at all another motion is believed only then.
- *   - The images have rivals, and the upsampled ones accept another motion with less: when matches come again.
- *   - The images leave the motion open, and that of the upsampled ones is one that they allow: when matches come again, the
- *     upsampled images know better. (Cameras near each other: their own poses are known to 30 degrees and more, the upsampled
- *     images' to one.) One that they do not allow is no answer.
- *   - The images have rivals or leave the motion open, and that of the upsampled ones is upside down: nothing is settled. Frames
- *     and windows match themselves so, in either look (one pair, with four seeds of six).
- *   - The images have a rival that is ASJ_SURE_RIVAL: only OUTNUMBERS times the log evidence settles that. What repeats so much
- *     does so in the upsampled images, too, whose rivals the matcher may have lost: it makes neighbours agree on one period. (Two
- *     pairs with 1.6 and 1.7 times, one out by 42 degrees; facades: where the upsampled images are wrong, up to 1.5 times, and 2.3
- *     and more where stains tell the windows from each other.)
- *   - The images say that the camera only turns: no motion of the upsampled ones undoes that. Of thousands of matches the errors
- *     that they have in common look like a small step. (A rendered pair turned by 15 degrees: the rotation has 39 nats more than
- *     any motion in the images, 22 fewer in the upsampled ones.)
- *   - The images' is accepted, and the upsampled ones have rivals: the images' is the answer (34 pairs, all within 3.4 degrees).
+ * Poses are two witnesses of one motion. The rules, in the order in which they are asked; each stands in full above its code:
+ *   - What only one of the two looks can tell is told by that one.                                             asj_looks_of()
+ *   - Of two accepted poses that agree the surer one is the answer.                                            compare()
+ *   - Of two that are at odds pictures decide, then much more evidence, then which one is upside down; or
+ *     nothing does.                                                                                            decide()
+ *   - Images that repeat themselves need more than other images do.                                            repeats()
+ *   - What the images leave open the upsampled ones settle: by the same motion or its rival, or by another one
+ *     with more evidence; but not upside down.                                            settles(), look_beyond()
+ *   - The images' colours answer where there is no geometry yet or none that is sure.                          asj_looks_take()
+ * Pictures (../geometry/picture_agreement.c) tell a motion from one that is far from it, and not from one that is nearly the same:
+ * there it is the planes that agree or not.                                              agrees_better(), is_convincing()
  *
- * More evidence for a motion that is far from the other one (OTHER_POSE) counts only where pictures are no reason against it
- * (CONVINCING), and of motions that are nearly the same pictures do not tell one from the other: it is the planes that agree or
- * not.
- *
- * A third witness are the images' colours (asj_looks_close()), where there is no motion yet, or none that is SURELY one and with
- * which the pictures agree by ENOUGH, and no rival that is ASJ_SURE_RIVAL. What they accept is the answer where the images have
- * chance or too little; where it has SURPASSES times the log evidence and SURELY (rooms 1000 to 1711: of 53 accepted with a log10
- * NFA above -30 13, all of which are right then, and one was out by 90 degrees before); where it does not contradict the images'
- * pose, is known better and has SURPASSES times the log evidence (of 90 accepted ones of rooms 1000 to 1399 and 6900 to 7299 with a
- * log10 NFA above -45 six, one wrong as before, the others out by 3.2 degrees at most before and .4 since); and where it is one of
- * the images' rivals, or a motion that the images allow. Nothing that is upside down. */
+ * How often which rule is needed, and how often it is right: tests/accuracy/tried/geometry.md, "Which look holds". */
 #include "looks.h"
 #include "core/angle.h"
 #include "geometry/ambiguity.h"
@@ -63,15 +31,14 @@
 #define OTHER_POSE (8 * ASJ_DEGREE)  /* where pictures decide */
 #define HALF_TURN 1e-6               /* 2 sin of an angle that is 180 degrees */
 
-/* Evidence of the upsampled images: */
-#define SURPASSES 1.25 /* times that of the images, */
-#define SURELY (-35)   /* log10 NFA; */
-#define OUTNUMBERS 2.0 /* times that, where the images repeat themselves; */
-#define OUTWEIGHS 2.5  /* times that of an accepted motion */
+/* Evidence of the upsampled images, or of the colours: */
+#define SURPASSES 1.25 /* times that of the images (98 of 100 pairs whose looks agree have 1.27 and more), */
+#define SURELY (-35)   /* log10 NFA (without it three more of 396 unrelated pairs are accepted, with it one); */
+#define OUTNUMBERS 2.0 /* times that, where the images repeat themselves (wrong ones have up to 1.7, right ones 2.3 and more); */
+#define OUTWEIGHS 2.5  /* times that of an accepted motion, with which it is at odds (a wrong one had 1.6) */
 
 /* Agreement of the pictures: */
-#define AGREES_BETTER 0.15 /* (eleven pairs of rooms with right looks and wrong ones: the right ones agree better by .17 to .54 in
-                            * seven, by .02 and .07 in two, and the wrong one by .09 in one) */
+#define AGREES_BETTER 0.15 /* right looks by .17 to .54 in seven of eleven pairs, a wrong one by .09 */
 #define WORSE 0.05
 #define ENOUGH 0.5         /* one right motion of 20 has less */
 #define CONVINCING (ASJ_USUAL_AGREEMENT - 0.005) /* nothing known is no reason against */
@@ -204,7 +171,8 @@ static int32_t is_upside_down(const asj_geometry *g)
     return tells_motion(g) && g->rotation[4] < 0;
 }
 
-/* Have the images a rival that is no chance by itself? */
+/* Have the images a rival that is no chance by itself? Then things repeat, and they do so in the upsampled images, too, whose
+ * rivals the matcher may have lost: it makes neighbours agree on one period. So only OUTNUMBERS times the evidence settles that. */
 static int32_t repeats(const asj_geometry *own)
 {
     return own->status == ASJ_GEOMETRY_AMBIGUOUS && own->has_rival && own->rival_log10_nfa < ASJ_SURE_RIVAL;
@@ -215,7 +183,9 @@ int32_t asj_looks_is_answer(const asj_geometry *g)
     return g->status == ASJ_GEOMETRY_ACCEPTED || asj_geometry_is_open(g);
 }
 
-/* Of two accepted poses that are at odds. */
+/* Of two accepted poses that are at odds one is wrong. Of two of a plane the plane is the answer, and its pose is open. Otherwise
+ * pictures say which one it is, where they can; if not, OUTWEIGHS times the evidence does; and if not, what is upside down is
+ * wrong, unless it has so much more itself. Where nothing says which, neither is told. */
 static asj_looks decide(const asj_geometry *own, const asj_geometry *upsampled)
 {
     if (!own->only_turns && own->model == ASJ_GEOMETRY_HOMOGRAPHY && upsampled->model == ASJ_GEOMETRY_HOMOGRAPHY)
@@ -232,7 +202,7 @@ static asj_looks decide(const asj_geometry *own, const asj_geometry *upsampled)
                ? ASJ_LOOKS_SETTLED : ASJ_LOOKS_DISPUTED;
 }
 
-/* Of two accepted poses, or turns of a camera. */
+/* Of two accepted poses, or turns of a camera: the surer one where they agree as far as they know. */
 static asj_looks compare(const asj_geometry *own, const asj_geometry *upsampled)
 {
     if (are_at_odds(own, upsampled))
@@ -245,14 +215,19 @@ int32_t asj_looks_may_settle(const asj_match_result *own)
     return asj_geometry_is_open(&own->geometry) && own->geometry.model == ASJ_GEOMETRY_ESSENTIAL;
 }
 
-/* Of images that have rivals or leave the motion open, whichever of their motions that is. */
+/* Does a motion settle what the images have rivals for or leave open? Where it is their best one or its rival it does: chance does
+ * not bring one motion to within SAME_POSE twice. Another one needs more evidence. No matches have to come again for that: where
+ * things repeat those of the images were matched by the period. */
 static int32_t settles(const asj_geometry *upsampled, const asj_geometry *own)
 {
     return upsampled->status == ASJ_GEOMETRY_ACCEPTED && upsampled->has_pose &&
            (have_same_pose(own, upsampled) || is_rival_of(own, upsampled) || surpasses(upsampled, own));
 }
 
-/* Of images that have rivals or leave the motion open. */
+/* Of images that have rivals or leave the motion open. Without matches of their own only what settles it counts. Nothing that is
+ * upside down does: frames and windows match themselves so, in either look. And no motion undoes that the camera only turns: of
+ * thousands of matches the errors that they have in common look like a small step. What does not settle it may still hold by its
+ * matches, which upsampled.c asks, unless it is a motion that the images do not allow. */
 static asj_looks look_beyond(const asj_match_result *own, const asj_geometry *upsampled)
 {
     const asj_geometry *a = &own->geometry;
@@ -268,6 +243,8 @@ static asj_looks look_beyond(const asj_match_result *own, const asj_geometry *up
     return a->status == ASJ_GEOMETRY_DEGENERATE && contradicts(a, upsampled) ? ASJ_LOOKS_LOST : ASJ_LOOKS_BY_UPSAMPLED;
 }
 
+/* The images' accepted geometry stays beside upsampled images that have none, or rivals, and beside a motion of another kind; one
+ * without a motion (a plane, a fundamental matrix) gives way to what the upsampled images accept. */
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled)
 {
     const asj_geometry *a = &own->geometry, *b = &upsampled->geometry;
@@ -293,7 +270,7 @@ static int32_t is_enough(const asj_geometry *g)
            (tells_motion(g) ? g->log10_nfa < SURELY && agrees_enough(g) : g->model != ASJ_GEOMETRY_ESSENTIAL);
 }
 
-int32_t asj_looks_may_close(const asj_match_result *own)
+int32_t asj_looks_want_other(const asj_match_result *own)
 {
     const asj_geometry *g = &own->geometry;
     if (g->status == ASJ_GEOMETRY_AMBIGUOUS)
@@ -307,10 +284,13 @@ static int32_t is_surer(const asj_geometry *a, const asj_geometry *b)
     return !are_at_odds(a, b) && uncertainty(a) < uncertainty(b) && a->log10_nfa < SURPASSES * b->log10_nfa;
 }
 
-int32_t asj_looks_close(const asj_match_result *own, const asj_match_result *other)
+/* Where the images have chance or too little, whatever the other look accepts. Otherwise no pose is no answer, nor is one that is
+ * upside down, nor any where the camera only turns. Rivals and motions that stay open it settles as the upsampled images do, and a
+ * motion that stays open also when the images allow it. A pose gives way to another one that surpasses it, or to a surer one. */
+int32_t asj_looks_take(const asj_match_result *own, const asj_match_result *other)
 {
     const asj_geometry *a = &own->geometry, *b = &other->geometry;
-    if (!asj_looks_may_close(own) || b->status != ASJ_GEOMETRY_ACCEPTED)
+    if (!asj_looks_want_other(own) || b->status != ASJ_GEOMETRY_ACCEPTED)
         return 0;
     if (a->status == ASJ_GEOMETRY_CHANCE || a->status == ASJ_GEOMETRY_TOO_FEW)
         return 1;

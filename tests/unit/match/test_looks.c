@@ -70,8 +70,8 @@ static void pictures_settle_what_is_ambiguous(void **state)
         const asj_looks looks = asj_looks_of(&own, &other);
         assert_int_equal(looks == ASJ_LOOKS_SETTLED, cases[k].settled);
         const int32_t repeats = cases[k].rival_nfa < -100; /* then colours are not asked */
-        assert_int_equal(asj_looks_close(&own, &other), cases[k].settled && !repeats);
-        assert_int_equal(asj_looks_may_close(&own), !repeats);
+        assert_int_equal(asj_looks_take(&own, &other), cases[k].settled && !repeats);
+        assert_int_equal(asj_looks_want_other(&own), !repeats);
     }
 }
 
@@ -88,10 +88,10 @@ static void little_agreement_is_looked_at_again(void **state)
         asj_match_result own, other;
         make(&own, ASJ_GEOMETRY_ACCEPTED, cases[k].own_nfa, 20, cases[k].own);
         make(&other, ASJ_GEOMETRY_ACCEPTED, -22, 0, cases[k].other);
-        assert_int_equal(asj_looks_may_close(&own), cases[k].may_close);
-        assert_int_equal(asj_looks_close(&own, &other), cases[k].closes);
+        assert_int_equal(asj_looks_want_other(&own), cases[k].may_close);
+        assert_int_equal(asj_looks_take(&own, &other), cases[k].closes);
         make(&own, ASJ_GEOMETRY_ACCEPTED, cases[k].own_nfa, 1, cases[k].own); /* the same motion: the surer one */
-        assert_int_equal(asj_looks_close(&own, &other), 0);
+        assert_int_equal(asj_looks_take(&own, &other), 0);
     }
 }
 
@@ -111,10 +111,10 @@ static void surer_poses_of_colours_are_taken(void **state)
             own.geometry.covariance[7 * i] *= cases[k].own_sd * cases[k].own_sd;
             other.geometry.covariance[7 * i] *= cases[k].other_sd * cases[k].other_sd;
         }
-        assert_int_equal(asj_looks_close(&own, &other), cases[k].closes);
+        assert_int_equal(asj_looks_take(&own, &other), cases[k].closes);
         own.geometry.has_pose = 0;
         own.geometry.only_turns = 1;
-        assert_int_equal(asj_looks_close(&own, &other), 0);
+        assert_int_equal(asj_looks_take(&own, &other), 0);
     }
 }
 

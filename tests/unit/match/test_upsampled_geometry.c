@@ -624,15 +624,15 @@ static void an_open_motion_is_found(void **state)
         if (cases[k].sd == 0)
             memset(own->geometry.rotation, 0, sizeof own->geometry.rotation);
         assert_int_equal(asj_looks_of(own, upsampled), cases[k].looks);
-        assert_int_equal(asj_looks_close(own, upsampled), cases[k].looks != ASJ_LOOKS_LOST);
+        assert_int_equal(asj_looks_take(own, upsampled), cases[k].looks != ASJ_LOOKS_LOST);
         own->geometry.only_turns = 1;
-        assert_int_equal(asj_looks_close(own, upsampled), 0);
+        assert_int_equal(asj_looks_take(own, upsampled), 0);
         own->geometry.only_turns = 0;
         upsampled->geometry.has_pose = 0;
-        assert_int_equal(asj_looks_close(own, upsampled), 0);
+        assert_int_equal(asj_looks_take(own, upsampled), 0);
         upsampled->geometry.has_pose = 1;
         upsampled->geometry.status = ASJ_GEOMETRY_CHANCE;
-        assert_int_equal(asj_looks_close(own, upsampled), 0);
+        assert_int_equal(asj_looks_take(own, upsampled), 0);
         asj_match_result_free(&own);
         asj_match_result_free(&upsampled);
     }
@@ -665,12 +665,12 @@ static void another_look_answers_what_is_open(void **state)
         own->geometry.log10_nfa = -30;
         coloured->geometry.log10_nfa = cases[k].log10_nfa;
         coloured->geometry.has_pose = own->geometry.status != ASJ_GEOMETRY_CHANCE && own->geometry.status != ASJ_GEOMETRY_TOO_FEW;
-        assert_int_equal(asj_looks_may_close(own), cases[k].may);
-        assert_int_equal(asj_looks_close(own, coloured), cases[k].closes);
+        assert_int_equal(asj_looks_want_other(own), cases[k].may);
+        assert_int_equal(asj_looks_take(own, coloured), cases[k].closes);
         own->geometry.log10_nfa = -36; /* a pose that is sure */
-        assert_true(!cases[k].has_pose || !asj_looks_may_close(own));
+        assert_true(!cases[k].has_pose || !asj_looks_want_other(own));
         coloured->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
-        assert_int_equal(asj_looks_close(own, coloured), 0);
+        assert_int_equal(asj_looks_take(own, coloured), 0);
         asj_match_result_free(&own);
         asj_match_result_free(&coloured);
     }
@@ -689,7 +689,7 @@ static void what_turns_over_settles_nothing(void **state)
         change_pose(own, 180, 1);
         change_pose(upsampled, 180, 1);
         assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_LOST);
-        assert_int_equal(asj_looks_close(own, upsampled), 0);
+        assert_int_equal(asj_looks_take(own, upsampled), 0);
         change_pose(own, 180, 1);
         change_pose(upsampled, 180, 1);
     }
