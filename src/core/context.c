@@ -8,7 +8,8 @@
 #include <string.h>
 #include <time.h>
 
-void asj_kept_free(asj_memory *memory, asj_kept *kept)
+/* If anything is kept. */
+static void free_kept(asj_memory *memory, asj_kept *kept)
 {
     if (kept->state)
         kept->free(memory, kept->state);
@@ -24,9 +25,9 @@ void asj_context_free(asj_context **pointer)
         return;
     if (context->cl)
         context->device->free(context);
-    asj_kept_free(&context->memory, &context->pool);
-    asj_kept_free(&context->memory, &context->detector);
-    asj_kept_free(&context->memory, &context->tables);
+    free_kept(&context->memory, &context->pool);
+    free_kept(&context->memory, &context->detector);
+    free_kept(&context->memory, &context->tables);
     asj_memory_trim(&context->memory);
     asj_memory memory = context->memory;
     asj_release(&memory, context);

@@ -46,9 +46,6 @@ struct asj_context {
     char message[512];
 };
 
-/* Frees what is kept, if anything. */
-void asj_kept_free(asj_memory *memory, asj_kept *kept);
-
 /* Which argument is a format as printf() has it, and the first of what it names. MinGW means the printf() of old Windows by that,
  * which knows no %zu; meson.build asks for the one of C99. */
 #if defined(__MINGW32__)

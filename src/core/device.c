@@ -55,7 +55,8 @@ static int parse_index(const char *text, size_t *index)
     return 1;
 }
 
-int asj_device_fits(const asj_device *device, size_t index, const char *selector)
+/* Whether a selector (asj_context_options.device) fits device number `index`. NULL and "" fit all. */
+static int fits(const asj_device *device, size_t index, const char *selector)
 {
     size_t wanted;
     if (!selector || !*selector)
@@ -76,7 +77,7 @@ size_t asj_device_choose(const asj_device *devices, size_t count, int32_t backen
     int32_t best_rank = 3;
     for (size_t i = 0; i < count; i++) {
         const asj_device *device = &devices[i];
-        if (!device->usable || !asj_device_fits(device, i, selector) ||
+        if (!device->usable || !fits(device, i, selector) ||
             (backend == ASJ_BACKEND_AUTO && device->type != ASJ_DEVICE_GPU))
             continue;
         const int32_t rank = anything ? ranks[device->type] : 0;

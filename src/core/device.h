@@ -7,9 +7,6 @@
 
 #include <asj/device.h>
 
-/* Whether a selector (asj_context_options.device) fits device number `index`. NULL and "" fit all. */
-int asj_device_fits(const asj_device *device, size_t index, const char *selector);
-
 /* Index of the device to take for the back end (ASJ_BACKEND_...), or `count` when none will do: the first usable one that fits;
  * without a selector GPUs before accelerators before the others. ASJ_BACKEND_AUTO takes GPUs only. */
 size_t asj_device_choose(const asj_device *devices, size_t count, int32_t backend, const char *selector);

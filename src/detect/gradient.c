@@ -116,12 +116,18 @@ static void find_row(const asj_frame *frame, int32_t y, asj_gradient_row *row)
     row->below = y + 1 < frame->height ? row->gray + frame->stride : row->gray;
 }
 
+/* Elements of a row of norms or sums. */
+static size_t row_length(int32_t width)
+{
+    return ((size_t)width + 31) / 32 * 32 + 2 * ASJ_GRADIENT_PAD;
+}
+
 /* Rows first .. last - 1. `scratch` holds gradient_scratch() zeros: the column sums in two halves, |g| of the last five rows, and a
  * row of the plane that is constant. */
 static void gradient_band(const asj_gradient_ops *ops, const asj_frame *frame, uint32_t epsilon, int32_t first, int32_t last,
                           uint16_t *scratch)
 {
-    const size_t length = asj_gradient_row_length(frame->width);
+    const size_t length = row_length(frame->width);
     uint16_t *low = scratch + ASJ_GRADIENT_PAD, *high = low + length, *norms = high + length, *zeros = norms + 5 * length;
     asj_gradient_row row = {zeros, zeros, zeros, frame->width, 0, epsilon};
     for (int32_t y = first > 2 ? first - 2 : 0; y < last + 2; y++) {
@@ -137,20 +143,15 @@ static void gradient_band(const asj_gradient_ops *ops, const asj_frame *frame, u
         row.window_rows = (y < frame->height ? y : frame->height - 1) - (centre > 2 ? centre - 2 : 0) + 1;
         find_row(frame, centre, &row);
         ops->normalise(&row, norms + (size_t)(centre % 5) * length, low, high,
-                                frame->gradient_x + (ptrdiff_t)centre * frame->stride,
-                                frame->gradient_y + (ptrdiff_t)centre * frame->stride);
+                       frame->gradient_x + (ptrdiff_t)centre * frame->stride,
+                       frame->gradient_y + (ptrdiff_t)centre * frame->stride);
     }
-}
-
-size_t asj_gradient_row_length(int32_t width)
-{
-    return ((size_t)width + 31) / 32 * 32 + 2 * ASJ_GRADIENT_PAD;
 }
 
 /* Elements. */
 static size_t gradient_scratch(int32_t width)
 {
-    return 8 * asj_gradient_row_length(width);
+    return 8 * row_length(width);
 }
 
 /* What a loop over bands of rows works on. */

@@ -15,9 +15,8 @@ asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect
 
 /* ---- parts of it, for one row ---- */
 
-/* Elements on either side of the pixels in the rows of norms and sums, and how long those rows are with them. */
+/* Elements on either side of the pixels in the rows of norms and sums. */
 #define ASJ_GRADIENT_PAD 32
-size_t asj_gradient_row_length(int32_t width);
 
 /* A row of the gray plane. From gray, at least 1 element is readable before x = 0; from all three, as many behind x = width - 1 as
  * make whole vectors of 32, and 1. */

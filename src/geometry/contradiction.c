@@ -97,7 +97,7 @@ static void add_pictures(const asj_estimation *e, asj_comparison *c)
 {
     if (!e->pictures || !(c->contrary > CONTRARY_SEEN))
         return;
-    const asj_look *first = &e->pictures->looks[0], *other = &e->pictures->looks[1];
+    const asj_picture_look *first = &e->pictures->looks[0], *other = &e->pictures->looks[1];
     const double beside = asj_inliers(&e->set, e->first.probability) < ASJ_FEW_MATCHES ? OF_FEW : 1;
     const double against_first = asj_pictures_against(other, first);
     c->against_other += (asj_pictures_against(first, other) + better(e, e->first.agreement, e->other.agreement)) / beside;

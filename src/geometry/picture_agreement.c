@@ -30,7 +30,7 @@ typedef struct gain {
 } gain;
 
 /* Mean difference between cell n in image 1 and another one in image 2. */
-static double difference(const asj_look *look, int32_t n, int32_t other)
+static double difference(const asj_picture_look *look, int32_t n, int32_t other)
 {
     double sum = 0;
     for (int32_t c = 0; c < look->channel_count; c++)
@@ -39,7 +39,7 @@ static double difference(const asj_look *look, int32_t n, int32_t other)
 }
 
 /* s; negative where there is little to compare with. */
-static double by_chance(const asj_look *look, int32_t n)
+static double by_chance(const asj_picture_look *look, int32_t n)
 {
     const int32_t column = n % ASJ_CELLS_ALONG, row = n / ASJ_CELLS_ALONG;
     double sum = 0;
@@ -55,7 +55,7 @@ static double by_chance(const asj_look *look, int32_t n)
     return count < LEAST_RING ? -1 : sum / count;
 }
 
-static void add_cell(const asj_look *look, int32_t n, gain *block)
+static void add_cell(const asj_picture_look *look, int32_t n, gain *block)
 {
     const double least = ASJ_LEAST_DIFFERENCE;
     if (look->cells[n].plane < 0 || !look->cells[n].is_near)
@@ -68,7 +68,7 @@ static void add_cell(const asj_look *look, int32_t n, gain *block)
     block->cells++;
 }
 
-asj_agreement asj_pictures_agreement(const asj_look *look)
+asj_agreement asj_pictures_agreement(const asj_picture_look *look)
 {
     gain all = {0, 0, 0};
     for (int32_t row = 0; row < ASJ_CELLS_ALONG; row += BLOCK)

@@ -14,6 +14,6 @@ typedef struct asj_agreement {
 } asj_agreement;
 
 /* How well the pictures agree through a geometry. */
-asj_agreement asj_pictures_agreement(const asj_look *look);
+asj_agreement asj_pictures_agreement(const asj_picture_look *look);
 
 #endif

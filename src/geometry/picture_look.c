@@ -33,7 +33,7 @@
 #define LEAST_AREA 0.05  /* a map that shrinks or enlarges a cell more than this shows nothing of it */
 #define MOST_AREA 20.0
 
-static void forget(asj_look *look)
+static void forget(asj_picture_look *look)
 {
     memset(look, 0, sizeof *look);
     for (int32_t n = 0; n < ASJ_CELLS; n++)
@@ -221,7 +221,7 @@ static int32_t compare_cell(const asj_pictures *pictures, const double h[9], dou
 }
 
 /* The line through the brightness of the cells in a channel, and what each lies off it. */
-static void fit(asj_look *look, int32_t channel)
+static void fit(asj_picture_look *look, int32_t channel)
 {
     double (*const brightness)[2] = look->brightness[channel];
     double a = 0, b = 1;
@@ -252,7 +252,8 @@ static void fit(asj_look *look, int32_t channel)
 }
 
 /* One cell. 1: it is seen. */
-static int32_t look_at_cell(const asj_pictures *pictures, const asj_two_view *view, int32_t planes, int32_t n, asj_look *look)
+static int32_t look_at_cell(const asj_pictures *pictures, const asj_two_view *view, int32_t planes, int32_t n,
+                            asj_picture_look *look)
 {
     const double cell = look->cell;
     const double x = (n % ASJ_CELLS_ALONG + 0.5) * cell - 0.5, y = (n / ASJ_CELLS_ALONG + 0.5) * cell - 0.5;
@@ -272,7 +273,7 @@ static int32_t look_at_cell(const asj_pictures *pictures, const asj_two_view *vi
 }
 
 void asj_pictures_look(asj_pictures *pictures, const asj_pairs *set, const asj_two_view *view, const double *probability,
-                       asj_look *look)
+                       asj_picture_look *look)
 {
     const int32_t width = pictures->of[0].width, height = pictures->of[0].height;
     const int32_t planes = find_planes(pictures, set, view, probability);

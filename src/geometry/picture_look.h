@@ -21,13 +21,13 @@ typedef struct asj_seen_cell {
 } asj_seen_cell;
 
 /* A look at the pictures through one geometry. */
-typedef struct asj_look {
+typedef struct asj_picture_look {
     asj_seen_cell cells[ASJ_CELLS];
     double cell;                                       /* px: side of a cell */
     double brightness[ASJ_MOST_CHANNELS][ASJ_CELLS][2]; /* logarithms of the mean levels in both images, .. */
     double offset[ASJ_MOST_CHANNELS], slope[ASJ_MOST_CHANNELS]; /* .. the second of which are about so much of the first */
     int32_t channel_count;
-} asj_look;
+} asj_picture_look;
 
 /* Matches on one plane: candidates, and those around all of them. */
 typedef struct asj_patch_of_plane {
@@ -39,7 +39,7 @@ typedef struct asj_patch_of_plane {
 typedef struct asj_pictures {
     asj_picture of[2]; /* with as many channels as either */
     asj_patch_of_plane planes[ASJ_MOST_PLANES];
-    asj_look looks[2];
+    asj_picture_look looks[2];
 } asj_pictures;
 
 /* NULL: no memory. */
@@ -48,6 +48,6 @@ void asj_pictures_free(asj_memory *memory, asj_pictures *pictures);
 
 /* The look of a geometry, given the probability of each candidate under it. */
 void asj_pictures_look(asj_pictures *pictures, const asj_pairs *set, const asj_two_view *view, const double *probability,
-                       asj_look *look);
+                       asj_picture_look *look);
 
 #endif

@@ -24,7 +24,7 @@
 #define LEAST_MEAN 0.15
 
 /* The mean of d over the cells of a block; 0 and *voters as it was when there are none. */
-static double ask_block(const asj_look *first, const asj_look *second, int32_t column, int32_t row, double *voters)
+static double ask_block(const asj_picture_look *first, const asj_picture_look *second, int32_t column, int32_t row, double *voters)
 {
     const double apart = ELSEWHERE * first->cell;
     double sum = 0;
@@ -42,7 +42,7 @@ static double ask_block(const asj_look *first, const asj_look *second, int32_t c
     return count > 0 ? sum / count : 0;
 }
 
-double asj_pictures_against(const asj_look *first, const asj_look *second)
+double asj_pictures_against(const asj_picture_look *first, const asj_picture_look *second)
 {
     double sum = 0, square = 0, voters = 0;
     for (int32_t row = 0; row < ASJ_CELLS_ALONG; row += BLOCK)

@@ -5,6 +5,6 @@
 #include "picture_look.h"
 
 /* How much the pictures speak against the second look: above 1 they contradict it, 0 where they do not or nothing is known. */
-double asj_pictures_against(const asj_look *first, const asj_look *second);
+double asj_pictures_against(const asj_picture_look *first, const asj_picture_look *second);
 
 #endif

@@ -237,8 +237,8 @@ void asj_count_votes(const asj_vote_search *s, double points[][3], int32_t count
     }
 }
 
-/* Votes for the point at all levels; the surest. */
-asj_vote asj_judge_point(const asj_vote_search *s, const double v[3])
+/* The votes that the point has, at the level where they are least likely by chance. */
+static asj_vote judge_point(const asj_vote_search *s, const double v[3])
 {
     asj_vote best = {{v[0], v[1], v[2]}, HUGE_VAL, 0, 0};
     double points[1][3] = {{v[0], v[1], v[2]}};
@@ -271,7 +271,7 @@ static asj_vote refine(const asj_vote_search *s, asj_vote at)
         }
         asj_symmetric_eigen(sum, 3, values, vectors);
         const double v[3] = {vectors[0], vectors[3], vectors[6]};
-        const asj_vote next = asj_judge_point(s, v);
+        const asj_vote next = judge_point(s, v);
         if (!(next.log_nfa < at.log_nfa))
             break;
         at = next;
@@ -294,7 +294,7 @@ static asj_vote judge_pair(const asj_vote_search *s, int32_t i, int32_t k)
 {
     asj_vote none = {{0, 0, 0}, HUGE_VAL, 0, 0};
     asj_cross3(s->lines[i].l, s->lines[k].l, none.v);
-    return asj_normalise3(none.v) ? asj_judge_point(s, none.v) : none;
+    return asj_normalise3(none.v) ? judge_point(s, none.v) : none;
 }
 
 static int32_t find_best(asj_vote_search *s, asj_vote *best)

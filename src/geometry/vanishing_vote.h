@@ -65,9 +65,6 @@ void asj_count_votes(const asj_vote_search *s, double points[][3], int32_t count
 /* Natural logarithm of sum over i >= k of C(n, i) p^i (1 - p)^(n - i), for all k up to n. */
 void asj_binomial_tails(int32_t n, double p, double *tail);
 
-/* The votes that v has, at the level where they are least likely by chance. */
-asj_vote asj_judge_point(const asj_vote_search *s, const double v[3]);
-
 /* The points with a log NFA of at most `most`, the surest first; room for ASJ_VOTE_POINTS. Returns how many, fewer when stopped. */
 int32_t asj_vote_points(asj_vote_search *s, double most, asj_vote *points);
 

@@ -16,7 +16,7 @@ struct asj_output {
     FILE *stream;
     int error;  /* errno of the first failed write, or 0 */
     char *path; /* as the caller gave it, for messages */
-    asj_place place;
+    asj_output_place place;
 };
 
 static void output_free(asj_output *output)

@@ -10,7 +10,7 @@
 #define NAMES 10000
 
 /* A new file beside the target. -1 with errno set when that fails. */
-static int create_temporary(asj_place *place)
+static int create_temporary(asj_output_place *place)
 {
     const size_t folder = asj_system_folder(place->target), size = folder + 64;
     place->temporary = malloc(size);
@@ -32,7 +32,7 @@ static int create_temporary(asj_place *place)
     return -1;
 }
 
-FILE *asj_place_open(asj_place *place, const char *path)
+FILE *asj_place_open(asj_output_place *place, const char *path)
 {
     int file = asj_system_open(path, &place->target);
     if (file < 0 && place->target) {
@@ -49,7 +49,7 @@ FILE *asj_place_open(asj_place *place, const char *path)
     return stream;
 }
 
-int asj_place_keep(asj_place *place)
+int asj_place_keep(asj_output_place *place)
 {
     if (!place->temporary)
         return 0;
@@ -60,7 +60,7 @@ int asj_place_keep(asj_place *place)
     return 0;
 }
 
-void asj_place_free(asj_place *place)
+void asj_place_free(asj_output_place *place)
 {
     if (place->temporary)
         asj_system_remove(place->temporary);

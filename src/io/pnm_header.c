@@ -115,7 +115,8 @@ int asj_pnm_read_header(const asj_input *input, asj_pnm_header *header)
     return 1;
 }
 
-uint64_t asj_pnm_pixel_bytes(const asj_pnm_header *header)
+/* Bytes that the pixels take; of text the fewest possible: a digit for each sample, and a blank between two. */
+static uint64_t pixel_bytes(const asj_pnm_header *header)
 {
     uint64_t count = header->width * header->height * header->samples;
     if (header->type == '4')
@@ -135,5 +136,5 @@ void asj_probe_pnm(const asj_input *input, asj_image_probe *probe)
     if (!probe->has_size)
         probe->fault = "its header makes no sense";
     else if (header.width && header.height)
-        probe->is_truncated = asj_pnm_pixel_bytes(&header) > input->size - header.pixels;
+        probe->is_truncated = pixel_bytes(&header) > input->size - header.pixels;
 }

@@ -18,9 +18,6 @@ typedef struct asj_pnm_header {
 /* 0 when it is none, or makes no sense. */
 int asj_pnm_read_header(const asj_input *input, asj_pnm_header *header);
 
-/* Bytes that the pixels take; of text the fewest possible: a digit for each sample, and a blank between two. */
-uint64_t asj_pnm_pixel_bytes(const asj_pnm_header *header);
-
 /* The next number, past blanks and comments; 0 when there is none below 10^9. */
 int asj_pnm_number(const asj_input *input, size_t *at, uint64_t *number);
 

@@ -111,7 +111,7 @@ static void reduce_row(const asj_frame *frame, int32_t y, int32_t width, const i
 }
 
 /* The samples between two rows of the reduced image. */
-static void level_row(const uint16_t *above, const uint16_t *below, int32_t width, asj_direction *direction, float *norm)
+static void level_row(const uint16_t *above, const uint16_t *below, int32_t width, asj_unit_vector *direction, float *norm)
 {
     const float unit = 0.5f / ASJ_GRAY_ONE, least = (float)(QUANTISATION / SINE);
     for (int32_t x = 0; x < width; x++) {
@@ -120,7 +120,7 @@ static void level_row(const uint16_t *above, const uint16_t *below, int32_t widt
         const float size = sqrtf(gx * gx + gy * gy);
         const int is = size > least;
         norm[x] = is ? size : 0;
-        direction[x] = is ? (asj_direction){-gy / size, gx / size} : (asj_direction){0, 0};
+        direction[x] = is ? (asj_unit_vector){-gy / size, gx / size} : (asj_unit_vector){0, 0};
     }
 }
 

@@ -9,15 +9,15 @@
 #define ASJ_LEVELS_SCALE 0.8
 
 /* A direction as a unit vector. */
-typedef struct asj_direction {
+typedef struct asj_unit_vector {
     float x, y;
-} asj_direction;
+} asj_unit_vector;
 
 /* The level-line field of the reduced image; sample (x, y) at [y * width + x], between the working pixels x, x + 1 and y, y + 1.
  * All arrays belong to it. */
 typedef struct asj_levels {
     int32_t width, height;
-    asj_direction *direction; /* of the level line, the dark side on its right */
+    asj_unit_vector *direction; /* of the level line, the dark side on its right */
     float *norm;              /* of the gradient, grey levels per working pixel; 0 where the level line is not defined */
     int32_t *order;           /* samples whose level line is defined, steepest first */
     int32_t order_count;

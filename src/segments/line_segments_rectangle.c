@@ -91,7 +91,7 @@ int32_t asj_rectangle_count(const asj_levels *levels, const asj_rectangle *r, co
         narrow(dy * r->uy - r->x * r->ux, r->ux, r->first, r->last, &left, &right);
         narrow(dy * r->ux + r->x * r->uy, -r->uy, low, high, &left, &right);
         for (int32_t x = (int32_t)ceil(left); x <= (int32_t)floor(right); x++) {
-            const asj_direction *at = &levels->direction[(ptrdiff_t)y * levels->width + x];
+            const asj_unit_vector *at = &levels->direction[(ptrdiff_t)y * levels->width + x];
             const float cosine = at->x * ux + at->y * uy; /* of samples without level line: 0, aligned with nothing */
             inside++;
             for (int32_t i = 0; i < count; i++)

@@ -68,10 +68,10 @@ static double squared_distance(const asj_levels *levels, int32_t a, int32_t b)
 /* cos of twice the standard deviation of the angles, about that of the seed, within `radius` of it. */
 static double narrower_cosine(const asj_levels *levels, const asj_support_region *region, double radius)
 {
-    const asj_direction seed = levels->direction[region->samples[0]];
+    const asj_unit_vector seed = levels->direction[region->samples[0]];
     double sum = 0, squares = 0, count = 0;
     for (int32_t i = 0; i < region->count; i++) {
-        const asj_direction *d = &levels->direction[region->samples[i]];
+        const asj_unit_vector *d = &levels->direction[region->samples[i]];
         if (squared_distance(levels, region->samples[0], region->samples[i]) > radius * radius)
             continue;
         const double sine = (double)(seed.x * d->y - seed.y * d->x);

@@ -8,7 +8,7 @@
 #define USUAL 0.6
 #define LITTLE 8.0
 
-static asj_look look;
+static asj_picture_look look;
 
 /* A wall of `columns` x `rows` cells near matches whose brightness differs by up to `contrast`; in image 2 a share of `wrong` is
  * another wall's. */

@@ -138,7 +138,7 @@ static void test_asked_in_every_row(void **state)
 enum { FIELD_WIDTH = 37, FIELD_HEIGHT = 29, FIELD = FIELD_WIDTH * FIELD_HEIGHT };
 typedef struct field {
     asj_levels levels;
-    asj_direction direction[FIELD];
+    asj_unit_vector direction[FIELD];
     float norm[FIELD];
     int32_t samples[FIELD];
     uint8_t used[FIELD];
@@ -153,7 +153,7 @@ static field *random_field(uint64_t seed)
     synth_random_seed(&random, seed);
     for (int i = 0; i < FIELD; i++) {
         const double angle = synth_random_between(&random, 0, 2 * UNIT_PI);
-        f->direction[i] = (asj_direction){(float)cos(angle), (float)sin(angle)};
+        f->direction[i] = (asj_unit_vector){(float)cos(angle), (float)sin(angle)};
         f->norm[i] = (float)synth_random_between(&random, 6, 60);
     }
     f->levels = (asj_levels){FIELD_WIDTH, FIELD_HEIGHT, f->direction, f->norm, NULL, 0};
@@ -205,7 +205,7 @@ static void test_region(void **state)
             const double dx = i % FIELD_WIDTH - 18, dy = i / FIELD_WIDTH - 14;
             const double along = dx * ux + dy * uy, across = dy * ux - dx * uy;
             f->norm[i] = fabs(along) <= 12 && fabs(across) <= 1.6 ? 20.0f : 0;
-            f->direction[i] = f->norm[i] > 0 ? (asj_direction){(float)ux, (float)uy} : (asj_direction){0, 0};
+            f->direction[i] = f->norm[i] > 0 ? (asj_unit_vector){(float)ux, (float)uy} : (asj_unit_vector){0, 0};
             if (f->norm[i] > 0) {
                 seed = i;
                 bar++;
@@ -234,7 +234,7 @@ static void test_cut(void **state)
         const int rises = x >= 4 && x <= 6 && y >= 4 && y <= 26;
         const double angle = lies && !rises ? 0.15 : -0.15;
         f->norm[i] = lies || rises ? 20.0f : 0;
-        f->direction[i] = lies || rises ? (asj_direction){(float)cos(angle), (float)sin(angle)} : (asj_direction){0, 0};
+        f->direction[i] = lies || rises ? (asj_unit_vector){(float)cos(angle), (float)sin(angle)} : (asj_unit_vector){0, 0};
     }
     asj_rectangle r;
     asj_region_grow(&f->levels, 5 * FIELD_WIDTH + 25, ASJ_REGION_COSINE, &f->region);
