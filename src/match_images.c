@@ -8,20 +8,15 @@
  * Upsampled. With junctions of octave -1 photographs have three times the matches (match/upsampled.c, which asks the images' own
  * matches whether those hold), in several times the time. options->upsample_from own matches are asked, so that pairs without
  * anything in common are answered as before; where they leave a motion open, none is needed, and without cameras one. A pose is
- * estimated again, from more matches, in 1.8 times the time, and match/looks.c says which one is told. (Rooms seen
- * from far apart, 1000 to 1399, as they are and so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at
- * 5, 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3 81.7; as they are decided now 356, 2, 84.0 86.6 87.9.) With half octaves
- * (options->upsampled_half_octaves) sixteen pairs have 4468 of 4567 right in place of 3088 of 3148, in 1.3 to 2.3 times the time,
- * and the rooms 336 poses in place of 331; and where these matches are looked for where the images' own ones put them
- * (match/expected.c) 4766 of 4892, in .7 of that time, and the rooms 337 poses, of these 6 out by more than 3 degrees; that is so
- * where no geometry is left open: told there, too, it is 338 and 7. In the images as they are these would add 3 % for a tenth of
- * the time, known less well. Without cameras the geometry of the images judges the new matches too: estimated again it gives 3 %
- * more right ones, of nine photographs.
+ * estimated again, from more matches, in 1.8 times the time, and match/looks.c says which one is told. With half octaves
+ * (options->upsampled_half_octaves) there are half as many matches again, in 1.3 to 2.3 times the time; in the images as they are
+ * these would add 3 %. Partners are looked for where the images' own matches put them (match/expected.c), and anywhere where these
+ * leave a geometry open: it would be confirmed, right or wrong. Without cameras the geometry of the images judges the new matches,
+ * too.
  *
  * Smaller. What a camera delivers of more than LARGEST pixels is seldom sharp to the pixel, junctions are of edges some pixels wide
  * then, and patches, of so many pixels, see little beside them. So such images are also looked at halved, as often as it takes, and
- * upsampled from there; that is told when it is more. (Sixteen pairs of photographs enlarged three times and blurred by 1 px: 2462
- * of 2509 matches right without, 6417 of 6513 with it; 135 s for the sixteen without, 131 s with it, two threads.) The looks that
+ * upsampled from there; that is told when it is more: soft photographs have two and a half times the matches then. The looks that
  * follow are of the smaller images, too.
  *
  * Stretched. A square on a plane seen at an angle of a to it has sin a of its height: at 1, 3 one at 19 degrees is a
@@ -34,11 +29,13 @@
  *
  * Colours. Where a geometry is asked, and neither look has one that is sure, agrees with the pictures and tells a motion, the
  * detector looks at colours, too (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright
- * there are corners that only these show. match/looks.c says what is believed. (Rooms 1000 to 1399: accepted 369 for 360, poses
- * 368, of these out by more than 3 degrees 1, for 359 and 2; of 252 unrelated pairs 19 for 17.)
+ * there are corners that only these show. match/looks.c says what is believed.
  *
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
- * often. So a stretched look needs ENOUGH matches, and as many more than there are. */
+ * often. So a stretched look needs ENOUGH matches, and as many more than there are.
+ *
+ * What each look brings: tests/accuracy/tried/matching.md ("Images upsampled", "Large photographs") and geometry.md ("What each
+ * look brings"). */
 #include "look.h"
 #include "core/colour_plane.h"
 #include "core/number_text.h"

@@ -26,8 +26,7 @@
 
 /* So many times the steps in upsampled images, where maps and places are off by twice as many px; not for the candidates of a
  * geometry, most of which are wrong, and of which one in a few is enough. Right matches of sixteen pairs 4766 of 4892 -> 4963
- * of 5064 in 1.04 of the time, made smaller by .7 and .5 3056 of 3175 -> 3189 of 3308 and 1697 of 1800 -> 1758 of 1847; three
- * times the steps 5022 of 5138. Rendered rooms: 5961 of 6042 -> 5959 of 6047. */
+ * of 5064 in 1.04 of the time (tests/accuracy/tried/matching.md, "Images upsampled"). */
 #define UPSAMPLED_STEPS 2
 
 /* The result: both lengths of a frame wrong by 1.58 change the area by 2.5; ends are wrong by 5 %. */

@@ -9,8 +9,8 @@
  * How much that is worth depends on the place. Where all channels look the same they are grey levels once more, with fewer samples,
  * and frames of videos lose by them. So with r the correlation between two channels of a patch, in the mean, over that of each with
  * itself, its hue is HUE (1 - r), 1 at most, and two frames are as alike as (g + w c) / (1 + w): g by grey levels, c by colours, w
- * the larger hue of the two (compare.c). (42 pairs of cropped frames, as they are, AUC at 5, 10, 20 degrees: 38.2/57.9/70.7 without
- * colours, with HUE 4 37.6/57.8/70.7, with 8 37.3/58.9/72.5, and with w = 1 for all 34.2/55.1/70.3.)
+ * the larger hue of the two (compare.c). With w = 1 for all frames lose (tests/accuracy/tried/geometry.md, "Candidates by
+ * colours").
  *
  * Of the image at half its size (small_picture.c). Whole numbers: the same on every machine. */
 #include "colour_patch.h"

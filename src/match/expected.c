@@ -9,11 +9,8 @@
  * before or behind them. Two L-junctions are compared when each lies in the rectangle of the other, so that swapping the images
  * changes nothing.
  *
- * In 48 rendered rooms (match_room --rooms --first-octave -1 --last 48) 12338 of 12562 matches are right without it, and with a
- * reach of .08, .04, .02 and .01 12604 of 12861, 12773 of 12954, 12866 of 13032 and, with two partners on the short list, 12900 of
- * 13078: more, for fewer comparisons. Two partners do as well as four there (12871 of 13041 at .02). Margins scaled as the maps
- * scale give as many (24 of the rooms: 5967 of 6048 in place of 5961 of 6042; 76 rooms seen from far apart, at scales of .4 to
- * 2.4: 3799 of 3914 in place of 3817 of 3932), since both rectangles must hold. */
+ * There are more right matches so, for fewer comparisons, down to a reach of .01 (tests/accuracy/tried/matching.md, "Images
+ * upsampled"). Margins scaled as the maps scale give as many, since both rectangles must hold. */
 #include "expected.h"
 #include "nearest.h"
 #include "core/watch.h"

@@ -10,11 +10,8 @@
  * until it is known as well as by a single match 29 px away (FARTHEST). Where the fundamental matrix of the matches is known
  * (epipolar.c), the end lies on its epipolar line, and so where that crosses the branch, unless it runs along it.
  *
- * Of segments of rendered rooms 1 to 12 that end so, 98.8 % (both) and 97.3 % (inner) are right, and 79.8 % of those cut where
- * the other's end is put; by the lengths under the match's own map, within end_tolerance, 96.3, 70.3 and 56.4 % were. Of all
- * segments of rooms 1 to 8, cut ones among them, 89.1 % are right where the end does not come nearer, with FARTHEST = 60, 45, 35,
- * 28 90.7, 92.6, 93.4, 93.7 %. Epipolar lines: of rooms 1 to 48 15135 of 15674 are right without them and 15137 with them, of
- * photographs 84.4 and 85.0 % (twelve pairs, cut ones among them). */
+ * Of segments of rendered rooms that end so 98.8 % (both) and 97.3 % (inner) are right, and 79.8 % of those cut; by the lengths
+ * under the match's own map it was 96.3, 70.3 and 56.4 % (tests/accuracy/tried/matching.md, "Ends of segments"). */
 #include "segments.h"
 
 #include <math.h>

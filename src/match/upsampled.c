@@ -2,27 +2,21 @@
 /* Step 7, junctions of octave -1.
  *
  * The upsampled images are matched as if they were the images: patches, distances between neighbours and tolerances in px suit what
- * is small, and octaves -1 and 0 are matched as one. (Seven photographs, right matches: 791 without octave -1, 2298 so; 1785 where
- * the two octaves are told apart. As guests (guests.c) of the images' own matches octave -1 adds 1297 right ones of 1416 to the 830
- * of sixteen pairs: one in twelve is wrong.)
+ * is small, and octaves -1 and 0 are matched as one. As guests (guests.c) of the images' own matches junctions of octave -1 are
+ * wrong in one of twelve.
  *
  * That alone is not safe. In soft frames of videos upsampled blur has many weak corners near each other, and a few of them agree by
- * chance with a few elsewhere: groups of three to five matches within 30 px, turned by any angle, each group for itself. Of seven
- * pairs of frames three that match nothing have 6 to 17 matches then, all wrong, and one has 12 wrong of 13.
+ * chance with a few elsewhere: groups of three to five matches within 30 px, turned by any angle, each group for itself.
  * The images themselves are the witness: their own matches, found with other junctions at another scale, come again in the
  * upsampled images when these are right. So the images are matched first without octave -1,
  *   - when nothing comes of it, and no motion is left open, that is the answer, in less time;
  *   - when AGAIN of their matches come again, and the upsampled images have more (with those that a geometry of the images has
  *     added, where it judges both), the upsampled images' matches are the answer, with the others whose places are free;
- *   - otherwise, and when the upsampled images contradict the images (MOST_CONTRADICTED: 48 rendered rooms 12272 of 12683 right ->
- *     12338 of 12562, looked for anywhere), the images' matches are.
+ *   - otherwise, and when the upsampled images contradict the images (MOST_CONTRADICTED), the images' matches are.
  * And the images' matches say where those of the upsampled ones are looked for (expected.c).
  * Of two matches at one place then one stays (same_place.c).
  * One geometry judges both, and where the images leave it open or the two are at odds it says which ones are, whether or not
- * matches come again (looks.c).
- * Matches that come again, of ten pairs that match: .41 to .85 where the upsampled images are right in 97 of 100 and more, .63
- * where they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30: all looked for anywhere.
- * Looked for where they are expected .59 to .84 of six pairs. */
+ * matches come again (looks.c). What was tried: tests/accuracy/tried/matching.md, "Images upsampled". */
 #include "upsampled.h"
 #include "upsampled_geometry.h"
 #include "result_changes.h"
@@ -31,7 +25,7 @@
 
 #include <math.h>
 
-#define AGAIN 0.3  /* between .14 and .41 */
+#define AGAIN 0.3  /* between the most of upsampled images that are wrong, .14, and the least of those that are right, .41 */
 #define OWN 0.2    /* of the time */
 #define MOST_CONTRADICTED 0.25 /* for one that comes again: things that repeat, matched by the period in the upsampled images. Of 48
                                 * rendered rooms .31 and 1.8 where that is so and .12 at most elsewhere, .08 at most where partners

@@ -4,24 +4,21 @@
  *   - A match that is there already goes when an epipolar geometry contradicts it: a location farther from its line than
  *     asj_farthest_from_line(). Off the plane of a homography are other planes. And lines against which more matches speak than
  *     candidates for them are not believed. Where cameras are known they may be some px off, no farther: a match that is beyond
- *     ELSEWHERE is no reason against them. (Rooms 1000 to 1399, upsampled: of three with floors of tiles 69 of 163 matches right ->
- *     100 of 100, all others as before.)
+ *     ELSEWHERE is no reason against them, but one that a floor of tiles has by the period.
  *   - Whatever the geometry, a match goes when it is as good as impossible (1 - SURE_PROBABILITY) and a likely candidate
  *     (LEAST_PROBABILITY) gives one of its places another partner, more than ELSEWHERE px away. Things that repeat match by the
- *     period, all together, and nothing around says so. (Rooms seen from far apart, seeds 0 to 99, with cameras: 161 such matches
- *     go, none of them right. Rooms 1 to 40: 7, of which 5 are right, of 5251; at any distance 21 of 24.)
+ *     period, all together, and nothing around says so.
  *   - A candidate comes when its probability is LEAST_PROBABILITY at least, and both its locations are free; where there are
- *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of
- *     four newcomers below that are right, and 45 of 47 above.)
+ *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least.
  *   - Newcomers go by the fundamental matrix of the matches that were there, too, where there is one (epipolar.c), no more than
- *     half of them went, and no cameras tell more; guests that newcomers propose go by it in any case. (Rooms 1 to 40: 61 of 71
- *     newcomers right, 60 of 67 with that. Rooms seen from far apart, with cameras: 680 of 758, 657 of 732.)
+ *     half of them went, and no cameras tell more; guests that newcomers propose go by it in any case.
  *   - Guests (guests.c) are no candidates, but matches as others are: contradicted ones go, and what the newcomers propose comes if
  *     the geometry does not contradict it.
  *
  * Each match receives its probability: that of the candidate; of guests, and beyond the likeliest candidates, which are all that a
  * geometry looks at (pairs.c), that under the geometry alone, where ASJ_MATCH_RIGHT of them are right before it, and of upsampled
- * images (upsampled.c) the larger one of both. It is 0 where a map keeps hardly any area. */
+ * images (upsampled.c) the larger one of both. It is 0 where a map keeps hardly any area. Counts of each rule:
+ * tests/accuracy/tried/geometry.md, "Which matches go, and which come". */
 #include "verdict.h"
 #include "epipolar.h"
 #include "geometry_candidate.h"
@@ -32,9 +29,9 @@
 #include <math.h>
 
 #define LEAST_PROBABILITY 0.5
-#define SURE_PROBABILITY 0.99
+#define SURE_PROBABILITY 0.99 /* of newcomers to photographs below it three of four are right, above it 45 of 47 */
 #define MANY_MATCHES 20
-#define ELSEWHERE 15.0 /* px */
+#define ELSEWHERE 15.0 /* px: of matches that go by it none is right in rooms seen from far apart; at any distance most are */
 
 /* --- candidates that the geometry makes likely ------------------------------------------------------------------------------- */
 
