@@ -5,8 +5,7 @@
  * evidence itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is matched more or less well
  * for reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries
  * have up to 1.6 times the log evidence of the best one that contradicts them, and with few matches more than that. And a rival
- * that is ASJ_SURE_RIVAL is one with SURE_SHARE of the best one's. (Of rooms 0 to 330 and 1000 to 1399 none is answered otherwise
- * without that share; of pairs of a stereo camera that looks at a chessboard one has -524 beside -103, a tile on.)
+ * that is ASJ_SURE_RIVAL is one with SURE_SHARE of the best one's.
  *
  * What is contradicted (contradiction.c) is no rival, nor is what pictures disagree with, unless it is ASJ_SURE_RIVAL. */
 #include "ambiguity.h"
@@ -21,7 +20,7 @@
 
 #define NEARLY 0.6
 #define APART 8.0 /* decades */
-#define SURE_SHARE 0.4
+#define SURE_SHARE 0.4 /* a chessboard's right motion has -524 beside -103, a tile on; wrong ones have rivals of .45 and more */
 #define NEARLY_OF_FEW 0.3
 #define APART_OF_FEW 13.0
 #define CONTRARY 0.4

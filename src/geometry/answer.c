@@ -6,12 +6,9 @@
  * although it has more parameters: it says where a match must lie along the line, too.
  *
  * A pose is one that is known to within POSE_SD, with all other motions counted as likely as their evidence says: all on one plane
- * there are two (Hartley and Zisserman, 13.4), and near that everything between. What is told is cautious: of poses known to 6 to
- * 10 degrees two of 398 rendered rooms are out by 0.2, and four of 42 of video frames (seven pairs, cropped by up to 5 pixels) by
- * 1.8, 2.2, 3.1 and 6.3; known to 10 to 18, two more of these frames, by 5.4 and 9.4. Cameras that are known, and fewer than
- * FEW_WITHOUT_POSE matches that leave the pose open, are degenerate: things that look alike hold together by so many. (Of 44 pairs
- * of unrelated rooms one, with 9 matches, a translation known to 12 degrees and an NFA of 10^-13; of 67 related ones that are
- * accepted none without a pose has fewer than 17.) */
+ * there are two (Hartley and Zisserman, 13.4), and near that everything between. What is told is cautious
+ * (tests/accuracy/tried/geometry.md, "Poses that are hardly known"). Cameras that are known, and fewer than FEW_WITHOUT_POSE
+ * matches that leave the pose open, are degenerate: things that look alike hold together by so many. */
 #include "answer.h"
 #include "ambiguity.h"
 #include "contradiction.h"
@@ -29,7 +26,7 @@
 
 #define ALMOST 0.8
 #define POSE_SD (10 * ASJ_DEGREE)
-#define FEW_WITHOUT_POSE 15.0
+#define FEW_WITHOUT_POSE 15.0 /* of 67 accepted related pairs none without a pose has fewer than 17 */
 #define SHIFTED_ROUNDS 3
 #define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* a translation known worse than this is none */
 

@@ -11,10 +11,9 @@
  * N the normal density and 1 / pi the flat one: right edges err by what they are out across (sd: vanishing_vote.c), and by what is
  * not quite at right angles (walls, lenses), b. How many edges belong to the directions, w, is one of SHARES, each as likely, and
  * so is b one of BENDS: score = log of the mean over the shares of the product of all r, at the best b. Edges of rendered rooms fit
- * the smallest ones, those of video frames 1 degree and more, and directions are as sure as that. (Rooms 1000 to 1399, `wide_rooms
- * --stretch 0,0`, AUC at 1, 2, 5, 10, 20 degrees: with 1 degree for all of them 55.6/69.0/79.8/83.7/85.8, so
- * 66.2/75.8/82.7/85.2/86.4.) Where the focal length is not known, b is 1 degree: with one that is a little wrong nothing is at
- * right angles.
+ * the smallest ones, those of video frames 1 degree and more, and directions are as sure as that (with 1 degree for all of them AUC
+ * at 1 degree is 55.6 for 66.2: tests/accuracy/tried/geometry.md, "How straight the edges are"). Where the focal length is not
+ * known, b is 1 degree: with one that is a little wrong nothing is at right angles.
  *
  * Search: vanishing points that pairs of the PAIRED longest edges define; those MOST_POINTS of them that explain most, more than
  * APART from each other, are one axis, and the other two are turned around it in steps, all that with b = BENDS[SEARCHED]; the best

@@ -8,14 +8,13 @@
  * Directions are not quite at right angles, so the covariances count `alike` times, and `sd` in each angle comes to them. How much
  * depends on the room and on the camera: rendered rooms have their walls at right angles, and their directions are as sure as they
  * say; those of video frames are out by 1.4 to 7.5 degrees. So the density of each is a mixture of three normal ones, as with the
- * locations of candidates (likelihood.c), the narrowest with half the covariances. (Rooms 1000 to 1399, `wide_rooms --stretch 0,0`,
- * AUC at 1, 2, 5, 10, 20 degrees: without the narrowest 50.9/65.8/78.2/82.9/85.3, with it 55.6/69.0/79.8/83.7/85.8, both before
- * directions.c asked how straight the edges are; 66.2/75.8/82.7/85.2/86.4 with that.)
+ * locations of candidates (likelihood.c), the narrowest with half the covariances (tests/accuracy/tried/geometry.md, "How
+ * straight the edges are").
  *
  * Photographs are taken upright: where in both images a direction lies within 40 degrees of the image's downward axis, it is the
- * same one, down, in nine of ten pairs. That leaves 4 of the 24 names, whose share of the prior is so much larger. (The same rooms:
- * 304 poses, 6 of them out by more than 3 degrees; what was a homography before has a pose, since of its two motions one is seldom
- * upright. UPRIGHT leaves room for a camera that was turned between the photographs.)
+ * same one, down, in nine of ten pairs. That leaves 4 of the 24 names, whose share of the prior is so much larger; and a homography
+ * has a pose, since of its two motions one is seldom upright. UPRIGHT leaves room for a camera that was turned between the
+ * photographs.
  *
  * Prior density of rotations: a half of it flat, the other half about all those that the sets of directions of both images give,
  * a pair of sets as likely as both are together: of each image EVEN of the whole is shared evenly by its sets, and the rest as
