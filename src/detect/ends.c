@@ -6,13 +6,12 @@
  * ends; px of the branch's octave both, and in coarse octaves, where ends are known worse, COARSE_REACH at least. The paper has no
  * such step (snap_distance = 0); there such ends are only told to be at a junction.
  *
- * A wide reach makes ends depend on whether the junction was found: on 24 photographs and their copies (zoom, shift, blur, noise,
- * compression, gain) 45.8 % of the junctions repeat with 8 px, 47.7 with 4, 48.6 with 3, by the paper's criterion. A junction that
- * is beyond doubt is found in every copy, though, and where a branch of its own comes back and none goes on, the edge ends at it:
- * another branch that leaves it at a small angle is what carried the end beyond. So at such a junction the reach grows from
- * snap_distance to SURE_REACH as log10 NFA of the second of its branches, best first, goes from DOUBTFUL to SURE. Against one reach
- * of 4 px, and 8 from -60 on, with snap_distance = 2: 45.8 % of the junctions of six photographs repeat at zoom 0.9 and 53.9 with
- * noise (44.3 and 49.9), of eighteen more 34.6 and 50.0 (34.0 and 49.2); .877 of the rendered room's lengths are right (.880). */
+ * A wide reach makes ends depend on whether the junction was found: of 24 photographs and their copies 45.8 % of the junctions
+ * repeat with 8 px, 48.6 with 3, by the paper's criterion. A junction that is beyond doubt is found in every copy, though, and
+ * where a branch of its own comes back and none goes on, the edge ends at it: another branch that leaves it at a small angle is
+ * what carried the end beyond. So at such a junction the reach grows from snap_distance to SURE_REACH as log10 NFA of the second of
+ * its branches, best first, goes from DOUBTFUL to SURE (against one reach: tests/accuracy/tried/detection.md, "The reach of
+ * ends"). */
 #include "ends.h"
 #include "core/angle.h"
 

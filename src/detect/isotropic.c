@@ -19,9 +19,8 @@
  * get stronger: beside two of ln F = -30 a third of -18 is left out, for at t of the weakest the product of three says less; three
  * of -9 are a junction where no two are. So the branches are those of the strongest that are meaningful whatever stands beside
  * them: two like it would be a junction, #J(2) F(omega; J)^2 <= epsilon. Whether there is a junction, and how meaningful it is, is
- * still said by the least NFA. Ours; preset paper uses it. With it the L-junctions that repeat under zoom by 0.9, 0.7, 0.5 on eight
- * photographs go from 40.4, 23.3, 11.4 to 41.9, 23.8, 11.6 %. Preset default gains at 0.9 (39.8 to 42.9 on six photographs) and
- * loses at 0.5 (22.6 to 21.0): it keeps the least NFA.
+ * still said by the least NFA. Ours; preset paper uses it: its L-junctions repeat more often under zoom by .9 to .5. Preset default
+ * gains at .9 and loses at .5: it keeps the least NFA (tests/accuracy/tried/detection.md, "All meaningful branches").
  *
  * `isotropic_persistence` = n: a junction is meaningful at n radii one after the other. Texture and compression make junctions at
  * single radii. In the output of the authors' program the scale exceeds the radius next to it, where it seems to be first

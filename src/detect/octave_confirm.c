@@ -9,15 +9,11 @@
  * deviation of the samples that make f, and k samples near the junction, it does not when
  *     |n / f| + DOUBT e / (|f| sqrt(k)) < LEAST_SHARE:
  * noise alone rejects nothing. (The magnitude, since at a crossing the far part may have changed its sign.) What is near begins
- * where no other branch touches it. Measured on rendered rooms (tests/accuracy, row room-n2) without it and with it: recall .948
- * and .945, precision .974 and .990; the soft and weak corners lose none.
+ * where no other branch touches it. Rendered rooms have precision .990 with it and .974 without, recall .945 and .948.
  *
  * What the image itself is SURE of stays: it joins nothing that it can tell apart, and round corners, borders one or two pixels
- * wide and a jutting edge leave as little contrast near true corners. (Of 1212 junctions with a log10 NFA below -20 that one octave
- * finds in 32 photographs, 139 had no junction within 5 px in the list of all octaves; so 48. By eye some 20 of 24 are corners.
- * Rooms, recall .951 -> .952, precision .991 -> .989; with none asked .953, .988. At zoom .9 and .7 of six photographs' junctions
- * 82.1 and 80.7 % repeat with all asked, 83.8 and 82.9 so, 83.7 and 82.2 with a limit of -10, 83.0 and 81.6 with -20; of 26 others'
- * 73.6 and 71.2, 74.7 and 72.7, 74.5 and 73.0, 73.7 and 72.4.) */
+ * wide and a jutting edge leave as little contrast near true corners (tests/accuracy/tried/detection.md, "What the image itself is
+ * sure of"). */
 #include "octave_confirm.h"
 #include "core/angle.h"
 #include "gray_at.h"

@@ -8,9 +8,8 @@
  * of fewer pixels than a sector needs are found there.
  *
  * With half_octaves there is one half-way between two: the same formula for o + 1/2, made of octave o (core/half_octave.c). What is
- * too soft or too weak for an octave, and too small for the next one, is found between them. Rooms and corners (tests/accuracy,
- * without and with them): of 5 grey levels .820 and .966 found, precision .997 and .998; blurred by 5 px, of 25 grey levels,
- * .867 and .939; rooms .952 and .956, precision .989 and .988; in 1.5 times the time.
+ * too soft or too weak for an octave, and too small for the next one, is found between them: corners of 5 grey levels .966 for
+ * .820, in 1.5 times the time.
  *
  * Which octave an edge belongs to is decided by its own width (edge_width.c), not by which octave fired first: lines that are
  * fitted to edges wider than the fits look follow noise, and corners of them are off by pixels.

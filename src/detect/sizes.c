@@ -4,33 +4,27 @@
  * Between an image and a junction stand a dozen decisions, each at a limit: which pixels are candidates, what passes the
  * isotropic test, which of several guesses suppresses the others, whether lines move the junction too far, whether a strip is
  * meaningful, reaches its junction, keeps its direction. A true corner that is not beyond doubt in all of them comes and goes
- * with anything that changes the pixels, and no limit is the cause: of what 26 photographs have at zoom .9 and not as they are
- * (450 of some 1900) validation drops 201, by a dozen reasons, fits and early rejection 108, the merge of octaves 31, and so on.
- * Better numbers for one decision change which corners are lost, not how many.
+ * with anything that changes the pixels, and no limit is the cause: better numbers for one decision change which corners are
+ * lost, not how many.
  *
  * But a second look tells more of a junction than any number of the first one, and another size of the image tells more than
  * other pixels of the same: other pixels are candidates, noise is averaged otherwise, and what limits measure in pixels, the
  * first 6 px of a branch, the radius of the test, is another part of the scene. So the detector looks three times, at the image
  * as it is, RATIO times smaller and RATIO times larger, and what two of them have within NEAR px (ASJ_SIZES_NEAR) stays, as the
- * first that has it sees it. (Looks are not independent: of 2097 junctions .84 has 65 % within NEAR px.) It is hysteresis,
- * without limits of its own.
+ * first that has it sees it. It is hysteresis, without limits of its own.
  *
  * Most of what a look takes it takes where nothing comes of it. So copies are looked at in places alone: the smaller one where
  * the image has something, or something that only its validation has rejected (sizes_step.c), and the larger one where these two
- * disagree. There they go through all steps, since a copy that says yes sooner tells less: without the second scan 82.1 81.6 80.4
- * % of the 26 are found again (in place of 85.2 83.0 80.7), without the validation 76.4 74.8 75.7. But what lies where an earlier
+ * disagree. There they go through all steps, since a copy that says yes sooner tells less. But what lies where an earlier
  * look has something is no more than a vote: its branches are followed for some pixels and have no ends. What the smaller one
  * alone has, and the larger one too, is a junction like others.
  *
- * Copies have the octaves of the image itself. Of these whole looks find a little more: 1924 junctions of the 26 for 1906, and of
- * the corners of 5 grey levels .907 for .85, which are too faint to be anything in the image itself; in 2.4 to 3.2 times the
- * time.
+ * Copies have the octaves of the image itself.
  *
- * RATIO: half as far from one size to the next as half octaves are. Sizes that are nearer are more alike: with 1.09 the 26 have
- * 80.4 % at .8 for 82.6 (looked at whole). With half octaves the smaller image has too few pixels for corners blurred by 8 px.
- * NEAR: with 2 81.2 and 80.4 % at .9 and .8. What two of three sizes have (tests/accuracy/README.md, zooms of .9 to .3, without
- * and with it): 26 photographs 77.2 74.7 74.9 75.1 80.3 75.6 80.6 and 85.0 82.5 80.3 81.3 80.7 77.4 83.7, six 85.0 84.8 84.4 84.1
- * 85.2 78.6 81.4 and 87.6 86.9 88.2 85.3 84.5 78.5 80.0. */
+ * RATIO: half as far from one size to the next as half octaves are. Sizes that are nearer are more alike; half octaves leave the
+ * smaller image too few pixels for corners blurred by 8 px. NEAR: with 2 px a twentieth fewer are found again. With all this 85 %
+ * of the junctions of 26 photographs are found again at zoom .9, where 77 % are without (tests/accuracy/tried/detection.md, "Two of
+ * three sizes", also for looking sooner, at whole images, and at other copies). */
 #include "sizes.h"
 
 #include <math.h>

@@ -22,11 +22,9 @@
  * the edge, noise, not at all. A branch that has turned by SLIPPED in all has left its edge. It ends where it had last turned by no
  * more than STAYS, and its line is fitted again up to there (refine_step.c).
  *
- * Conductors that turn by 40 degrees side by side (test_slip.c), 5, 6 and 8 px from one to the next: of the branches' length .59,
- * .31 and .02 is more than a degree off without this, .26, .15 and .00 with it; with a whole turn in place of SLIPPED .33, .16 and
- * .00. With less long edges with another one beside them become shorter. Of the 138 junctions of a photograph of a circuit board
- * 131 are left: the others were drawn across conductors. Rendered rooms have next to none that slips. Not in presets that take weak
- * corners: sixteen pairs of photographs have 4666 of 4751 right matches with it for 4688 of 4784. */
+ * Conductors that turn by 40 degrees side by side (test_slip.c), 5 px from one to the next: of the branches' length .59 is more
+ * than a degree off without this, .26 with it. Rendered rooms have next to none that slips. Not in presets that take weak corners,
+ * where it costs a few right matches (tests/accuracy/tried/detection.md, "Branches that slip"). */
 #include "slip.h"
 
 #include <math.h>
@@ -38,7 +36,8 @@
 #define BLOCKS 24         /* and so many of them do, from the junction on */
 #define ROWS 340          /* at most; what is farther is not looked at */
 #define LEAST_ROWS 10     /* in less nothing slips */
-#define SLIPPED (1.5 * ASJ_PI) /* three quarters of a period: nearer to the next edge like it than to its own */
+#define SLIPPED (1.5 * ASJ_PI) /* three quarters of a period: nearer to the next edge like it than to its own. With less long
+                                * edges with another one beside them become shorter */
 #define STAYS (ASJ_PI / 3)
 #define FASTEST 0.6       /* sine of a step: a period of 5 px at 6 degrees takes 16 of them. What turns faster lies across */
 #define LEAST_NORM 1e-4   /* of m' beside m: a section that does not change when it moves */
