@@ -216,14 +216,17 @@ static void mark_end(asj_hypothesis *from, int32_t branch, const asj_hypothesis 
         along->end = ASJ_BRANCH_END_JUNCTION;
 }
 
-static void start(graph *g, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves)
+static graph start(const asj_edge_search *s)
 {
-    g->log_epsilon = log(options->epsilon);
-    g->own_octave = options->independent_octaves;
+    graph g = {.watch = s->watch, .evidence = s->evidence, .grid = s->grid, .hypotheses = s->hypotheses, .nearest = s->scratch,
+               .joined = s->scratch + s->count * ASJ_MAX_BRANCHES, .own_octave = s->options->independent_octaves,
+               .log_epsilon = log(s->options->epsilon)};
     for (double o = ASJ_FIRST_OCTAVE; o < ASJ_MAX_OCTAVES; o += 0.5) {
-        const int32_t columns = asj_octave_size(width, o), rows = asj_octave_size(height, o);
-        g->log_tests[asj_octave_index(o)] = asj_strip_log_tests(columns > 0 ? columns : 1, rows > 0 ? rows : 1, octaves);
+        const int32_t columns = asj_octave_size(s->width, o), rows = asj_octave_size(s->height, o);
+        g.log_tests[asj_octave_index(o)] = asj_strip_log_tests(columns > 0 ? columns : 1, rows > 0 ? rows : 1, s->octaves);
     }
+    memset(g.joined, 0xff, s->count * ASJ_MAX_BRANCHES * sizeof *g.joined);
+    return g;
 }
 
 static void find_some(const void *data, const asj_part *part)
@@ -265,18 +268,15 @@ static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
                       (float)(between(g, &from->branches[b], &to->branches[c], distance) / ASJ_LN_10), {0, 0}};
 }
 
-size_t asj_edges_join(asj_watch *watch, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
-                      const asj_evidence *evidence, const asj_junction_grid *grid, asj_hypothesis *hypotheses, size_t count,
-                      int32_t *scratch, asj_edge *edges)
+size_t asj_edges_join(const asj_edge_search *search, asj_edge *edges)
 {
-    graph g = {.watch = watch, .evidence = evidence, .grid = grid, .hypotheses = hypotheses, .nearest = scratch,
-               .joined = scratch + count * ASJ_MAX_BRANCHES};
+    asj_hypothesis *hypotheses = search->hypotheses;
+    const size_t count = search->count;
+    graph g = start(search);
     size_t found = 0;
-    start(&g, options, width, height, octaves);
-    memset(g.joined, 0xff, count * ASJ_MAX_BRANCHES * sizeof *g.joined);
     for (int32_t pass = 0; pass < 2; pass++) {
         find_all(&g, count, pass == 0);
-        if (asj_watch_end(watch) != ASJ_OK)
+        if (asj_watch_end(search->watch) != ASJ_OK)
             return 0;
         join_nearest(&g, count);
     }

@@ -25,8 +25,9 @@ asj_status asj_step_join(asj_detection_run *run)
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
     if (scratch && run->edges) {
-        run->edge_count = asj_edges_join(&watch, run->options, width, height, run->sharing, run->evidence, &grid, run->hypotheses,
-                                         count, scratch, run->edges);
+        const asj_edge_search search = {&watch, run->options, width, height, run->sharing, run->evidence, &grid, run->hypotheses,
+                                        count, scratch};
+        run->edge_count = asj_edges_join(&search, run->edges);
         status = asj_watch_end(&watch);
     } else
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for edges between %zu junctions", count);

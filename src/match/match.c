@@ -268,15 +268,8 @@ static asj_status match_features(asj_context *context, const asj_match_options *
     return status;
 }
 
-/* One image as the caller gives it. */
-typedef struct source {
-    const asj_image *image;
-    const asj_junction *junctions;
-    size_t count;
-} source;
-
 /* Of one image; `upsampled`: of the image upsampled by two, if it has junctions of octave -1. */
-static asj_status make_features(asj_context *context, const asj_match_options *options, const source *s, int32_t n,
+static asj_status make_features(asj_context *context, const asj_match_options *options, const asj_match_source *s, int32_t n,
                                 int32_t upsampled, asj_image_features *features)
 {
     const int32_t has_upsampled = upsampled && asj_has_upsampled(s->junctions, s->count);
@@ -290,7 +283,7 @@ static asj_status make_features(asj_context *context, const asj_match_options *o
 static asj_status match_sources(asj_context *context, const asj_match_options *options, const void *data, int32_t upsampled,
                                 const asj_known_matches *known, asj_match_result **result)
 {
-    const source *sources = data;
+    const asj_match_source *sources = data;
     asj_image_features features[2];
     const asj_image_features *both[2] = {&features[0], &features[1]};
     stop_watch watch = {.clock = asj_clock_ms()};
@@ -306,12 +299,9 @@ static asj_status match_sources(asj_context *context, const asj_match_options *o
     return status;
 }
 
-asj_status asj_match_look(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
-                          const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                          const asj_match_options *options, int32_t upsampled, const asj_known_matches *known,
-                          asj_match_result **result)
+asj_status asj_match_look(asj_context *context, const asj_match_source sources[2], const asj_match_options *options,
+                          int32_t upsampled, const asj_known_matches *known, asj_match_result **result)
 {
-    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
     if (result)
         *result = NULL;
     if (asj_enter(context) != ASJ_OK)
@@ -349,6 +339,7 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
                      const asj_image *image2, const asj_junction *junctions2, size_t count2,
                      const asj_match_options *options, asj_match_result **result)
 {
+    const asj_match_source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
     asj_match_options defaults;
     if (result)
         *result = NULL;
@@ -361,7 +352,7 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
     const double start = asj_clock_ms();
     asj_status status = asj_match_request_check(context, options);
     if (status == ASJ_OK)
-        status = asj_match_look(context, image1, junctions1, count1, image2, junctions2, count2, options, 0, NULL, result);
+        status = asj_match_look(context, sources, options, 0, NULL, result);
     return status == ASJ_OK ? finish_call(context, start, result) : status;
 }
 

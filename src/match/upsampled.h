@@ -36,12 +36,17 @@ asj_status asj_match_upsampled(asj_context *context, const asj_match_options *op
  * their L-junctions have the same numbers. */
 asj_status asj_upsampled_choose(asj_context *context, asj_match_result **own, asj_match_result **upsampled, int32_t same_lists);
 
+/* An image that is matched, and its junctions. */
+typedef struct asj_match_source {
+    const asj_image *image;
+    const asj_junction *junctions;
+    size_t count;
+} asj_match_source;
+
 /* asj_match() as one of several looks at two images, whose pose is not finished (final_pose.h), with options that are checked, and
- * with cameras of stretched images perhaps. `upsampled`: of the upsampled images alone; known may be NULL. */
-asj_status asj_match_look(asj_context *context,
-                          const asj_image *image1, const asj_junction *junctions1, size_t count1,
-                          const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                          const asj_match_options *options, int32_t upsampled, const asj_known_matches *known,
-                          asj_match_result **result);
+ * with cameras of stretched images perhaps. `upsampled`: of the upsampled images alone; known may be NULL. Errors as of
+ * asj_match(). */
+asj_status asj_match_look(asj_context *context, const asj_match_source sources[2], const asj_match_options *options,
+                          int32_t upsampled, const asj_known_matches *known, asj_match_result **result);
 
 #endif

@@ -59,7 +59,8 @@ static void join(drawing *d)
     asj_watch watch;
     asj_watch_start(&watch, context, ASJ_STAGE_REFINE);
     assert_int_equal(asj_junction_grid_make(context, d->list, d->count, 640, 480, &grid), ASJ_OK);
-    d->edge_count = asj_edges_join(&watch, &options, 640, 480, 1, evidence, &grid, d->list, d->count, scratch, d->edges);
+    const asj_edge_search search = {&watch, &options, 640, 480, 1, evidence, &grid, d->list, d->count, scratch};
+    d->edge_count = asj_edges_join(&search, d->edges);
     asj_junction_grid_free(context, &grid);
     asj_context_free(&context);
     free(scratch);
