@@ -253,9 +253,8 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;
     if (second >= 0 && asj_is_ambiguous(e, best, second, doubt, result->inliers))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
-    if (result->status == ASJ_GEOMETRY_ACCEPTED && doubt_what_repeats(e, best, result) != ASJ_OK)
-        return ASJ_ERROR_MEMORY;
-    if (judge && result->status == ASJ_GEOMETRY_ACCEPTED)
+    const asj_status status = result->status == ASJ_GEOMETRY_ACCEPTED ? doubt_what_repeats(e, best, result) : ASJ_OK;
+    if (status == ASJ_OK && judge && result->status == ASJ_GEOMETRY_ACCEPTED)
         *judge = asj_judge_create(&e->finalists[best].view, &e->set);
-    return ASJ_OK;
+    return status;
 }

@@ -196,16 +196,16 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
         set->count--;
     set->has_colours = colours != NULL;
     set_scales(options, set);
-    if (set_rotations(context, options, hints, set) != ASJ_OK)
-        return ASJ_ERROR_MEMORY;
-    for (int32_t v = 0; v < 2; v++) {
-        const asj_status status = number_places(context, set, v);
-        if (status != ASJ_OK)
-            return status;
-    }
+    asj_status status = set_rotations(context, options, hints, set);
+    for (int32_t v = 0; v < 2 && status == ASJ_OK; v++)
+        status = number_places(context, set, v);
+    if (status != ASJ_OK)
+        return status;
     limit_priors(set);
-    if (set->has_labels && order_rotations(context, set) != ASJ_OK)
-        return ASJ_ERROR_MEMORY;
+    if (set->has_labels)
+        status = order_rotations(context, set);
+    if (status != ASJ_OK)
+        return status;
     return asj_near_prepare(&context->memory, set)
                ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu candidates", (unsigned long)set->count);
 }
