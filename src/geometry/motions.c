@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Motions with planes: each essential matrix that was found, and each motion of a homography that was found, is refined, and the
  * best that differ receive planes. So walls and floor speak for one motion together, and what one plane leaves open (two motions;
- * which of its tiles) the others decide. The best SETTLED that lie apart become what the candidates allow around them
+ * which of its tiles) the others decide. The best ASJ_SETTLED that lie apart become what the candidates allow around them
  * (posterior.c). */
 #include "motions.h"
 #include "core/sort.h"

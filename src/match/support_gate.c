@@ -6,7 +6,8 @@
  *     a branch of c leads past d in both images, within 3 sqrt(2 REACH) px, and with the longer one of d's it covers the way but
  *     for end_tolerance of it.
  *
- * The first is what misprediction() of agreement.c asks of either map; the second is necessary for shared() to be below REACH. */
+ * The first is what misprediction() of agreement.c asks of either map; the second is necessary for shared() to be below REACH
+ * (ASJ_AGREEMENT_REACH). */
 #include "support_gate.h"
 
 #include <math.h>
