@@ -10,54 +10,11 @@
 #include "core/angle.h"
 
 #include <math.h>
-#include <string.h>
-
-#define CELL 16 /* px */
 
 #define BEGINS 6.0        /* px of the coarser octave. Less leaves ghosts; more begins to tell corners that are there from others */
 #define OFF_LINE 1.5      /* px of the coarser octave */
 #define SAME_WAY 0.2      /* rad: to which directions of both octaves agree */
 #define OTHER_WAY 0.3     /* rad: to which a branch goes on */
-
-static int32_t cells_of(int32_t size)
-{
-    return size / CELL + 1;
-}
-
-size_t asj_octave_grid_cells(size_t count, int32_t width, int32_t height)
-{
-    return (size_t)cells_of(width) * (size_t)cells_of(height) + count;
-}
-
-static int32_t inside(double cell, int32_t cells)
-{
-    return cell <= 0 ? 0 : cell >= cells - 1 ? cells - 1 : (int32_t)cell;
-}
-
-asj_octave_cells asj_octave_grid_around(const asj_octave_grid *grid, const asj_hypothesis *hypothesis, double reach)
-{
-    const double x = hypothesis->x, y = hypothesis->y;
-    return (asj_octave_cells){inside((x - reach) / CELL, grid->columns), inside((x + reach) / CELL, grid->columns),
-                              inside((y - reach) / CELL, grid->rows), inside((y + reach) / CELL, grid->rows)};
-}
-
-asj_octave_grid asj_octave_grid_start(int32_t width, int32_t height, int32_t *cells)
-{
-    asj_octave_grid grid = {cells, NULL, cells_of(width), cells_of(height), 0};
-    const size_t count = (size_t)grid.columns * (size_t)grid.rows;
-    grid.next = cells + count;
-    memset(grid.heads, 0xff, count * sizeof *grid.heads);
-    return grid;
-}
-
-void asj_octave_grid_add(asj_octave_grid *grid, const asj_hypothesis *hypotheses, size_t index)
-{
-    const asj_octave_cells at = asj_octave_grid_around(grid, &hypotheses[index], 0);
-    int32_t *head = &grid->heads[at.top * grid->columns + at.left];
-    grid->next[index] = *head;
-    *head = (int32_t)index;
-    grid->coarsest = grid->coarsest > hypotheses[index].octave ? grid->coarsest : hypotheses[index].octave;
-}
 
 /* Whether the branch begins at `finer` and not at the junction that it is said to be of. */
 static int begins_at(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, const asj_hypothesis *finer)

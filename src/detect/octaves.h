@@ -4,7 +4,7 @@
 #ifndef ASJ_SRC_OCTAVES_H
 #define ASJ_SRC_OCTAVES_H
 
-#include "octave_ghosts.h"
+#include "octave_grid.h"
 
 /* The octaves that the options ask for and an image of this size has: first .. end - 1, at least one, and those between. */
 typedef struct asj_octave_range {

@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_SIZES_H
 #define ASJ_SRC_SIZES_H
 
-#include "octave_ghosts.h"
+#include "octave_grid.h"
 
 #define ASJ_SIZES 3
 #define ASJ_SIZES_NEAR 3.0 /* px of the image between what two sizes have of one junction: see sizes.c */

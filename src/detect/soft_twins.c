@@ -12,7 +12,7 @@
  * on a bent edge, one may be a corner; with REACH 5 the inner corner of a letter goes, too. As they are the photographs have none.
  * Without WEAK true corners go: of the junctions of eighteen photographs .3 % less repeat at zoom .9. */
 #include "soft_twins.h"
-#include "octave_ghosts.h"
+#include "octave_grid.h"
 
 #include <math.h>
 
