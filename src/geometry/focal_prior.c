@@ -2,15 +2,12 @@
 /* The directions of a room are at right angles (directions.c), and with a wrong focal length they are not: edges that run towards
  * two vanishing points v and w of it give f by (v - c)'(w - c) + f^2 = 0 (Caprile and Torre 1990). No single pair of points is sure
  * enough; but how well the best three directions explain all edges, score(f), is a log likelihood ratio, and its peak stands at the
- * right focal length. (Rendered rooms seen from far apart, 58 pairs, both images, ASJ_SCORE_COOL as below: within 3 % in 48, and
- * where the peak's standard deviation is below a tenth, in 46, within 6 %; seven pairs of video frames: within 6 % in four, 11 % in
- * five.)
+ * right focal length (of 58 pairs of rendered rooms within 3 % in 48, of seven pairs of video frames within 6 % in four).
  *
  * Edges are not independent (both sides of a board; what is not quite at right angles), so their scores count by ASJ_SCORE_COOL.
- * Then none of those peaks is out by more than two standard deviations, of rooms or frames, but one of the latter; with 1 five are.
- * (With 4 poses of rooms 1000 to 1119 have AUC 33.6/51.6/68.2/74.4/77.6 at 1, 2, 5, 10, 20 degrees, with 2
- * 36.1/53.9/68.4/74.4/78.0, both before the narrow part of manhattan.c.) With it, over a flat density of log f, the edges' own one
- * is
+ * Then none of those peaks is out by more than two standard deviations, of rooms or frames, but one of the latter; with 1 five are
+ * (tests/accuracy/tried/geometry.md, "What edges say of the focal length"). With it, over a flat density of log f, the edges' own
+ * one is
  *
  *     s(f) = exp((score1(f) + score2(f)) / ASJ_SCORE_COOL) / mean over f of the same.
  *

@@ -117,9 +117,8 @@ int32_t asj_in_front(const double rotation[9], const double translation[3], cons
 
 /* What belongs to a plane stands a little before or behind it: frames, skirtings, handles. By a share s of its distance it is off
  * by s times its parallax, which is f |n| px at most. Seen from far apart that is as much as locations are off anyway; from 1 to 15
- * degrees apart it is less, and a plane to which all belongs that lies within the errors of locations takes what tells the motion.
- * (149 such pairs of rooms, with planes as thick as that and now: 105 and 125 poses, of these out by more than 3 degrees 14 and 16,
- * AUC at 1, 2, 5 degrees 26.1 39.5 53.3 and 29.6 44.1 62.4: wide_rooms --near.) */
+ * degrees apart it is less, and a plane to which all belongs that lies within the errors of locations takes what tells the motion
+ * (tests/accuracy/tried/geometry.md, "Near each other"). */
 static double thickness_of(const double plane[3], const asj_camera *camera)
 {
     return fmin(1, hypot(THINNEST, RELIEF * camera->fx * sqrt(asj_dot3(plane, plane))));

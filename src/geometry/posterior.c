@@ -20,10 +20,8 @@
  * thin as what the candidates allow. Where fewer than ENOUGH weigh anything in the end, their spread is that of chance, and
  * Laplace's tells the rest. (Of 63 motions a tenth have fewer than 43, one has 1.5: it was told to .71 of Laplace's deviations
  * without TEMPER, which asks for more than these.)
- * (Where cameras are near each other, turning and moving look alike, and the two together are known far better than either. An sd
- * of 0.06 degrees for all parameters in place of it left hardly a draw that weighed anything: in 149 pairs of rooms seen from 1
- * to 15 degrees apart translations were out by 1.4 told standard deviations in the median and by 4.7 and more in a tenth; with it
- * by 1.0 and 2.5, before poses were finished by match/final_pose.c. wide_rooms --near.) */
+ * (Where cameras are near each other, turning and moving look alike, and the two together are known far better than either: with
+ * one sd for all parameters in place of it hardly a draw weighs anything.) */
 #include "posterior.h"
 #include "core/angle.h"
 #include "core/threads.h"

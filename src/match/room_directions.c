@@ -6,9 +6,9 @@
  * bare corner, the vanishing points of the branches (geometry/vanishing.c) do, to BRANCHES_SD.
  *
  * Segments are looked for where the image is no larger than LONGEST px: what is straight is seen there. And at half that size: what
- * is faint or soft has no level lines where its slope is less than rounding and noise, and twice the slope there. (Rooms 1440 to
- * 1519: 7 of 158 images have no directions without it and none with it, the rotations between pairs are out by .24 degrees, nine
- * in ten by .88, and by .15 and .57; with a third level by .17 and .58.) */
+ * is faint or soft has no level lines where its slope is less than rounding and noise, and twice the slope there (7 of 158
+ * images have no directions without it and none with it; with a third level nothing is gained: tests/accuracy/tried/geometry.md,
+ * "Edges at half the size, rivals that both looks have"). */
 #include "room_directions.h"
 #include "core/angle.h"
 #include "geometry/vanishing.h"
