@@ -12,9 +12,8 @@
 
 #include <math.h>
 
-#define OVERRULED 1.2 /* what speaks against the best one, where 1 contradicts another: it has the most evidence for it. (821 of
-                       * those pairs: two right ones have more than that against them, the next 1.17; of 47 wrong ones, which have
-                       * more evidence than a right one that something speaks for, 36.) */
+#define OVERRULED 1.2 /* what speaks against the best one, where 1 contradicts another: it has the most evidence for it. (In 821
+                       * pairs two right ones have more than that against them, the next 1.17; of 47 wrong ones in front 36.) */
 #define MOST_STRUCK 4 /* times that the best one changes: in 198 pairs of rooms once in six, never twice */
 #define MOST_TRIED 4  /* others, each time: of what is preferred to the best one something else may have more evidence still */
 
