@@ -17,8 +17,8 @@
 #include "evidence.h"
 #include "likelihood.h"
 #include "motions.h"
+#include "other_motions.h"
 #include "period.h"
-#include "posterior.h"
 #include "small_matrix.h"
 
 #include <math.h>

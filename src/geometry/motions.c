@@ -8,6 +8,7 @@
 #include "core/threads.h"
 #include "evidence.h"
 #include "manhattan.h"
+#include "other_motions.h"
 #include "planes.h"
 #include "posterior.h"
 #include "ranking.h"

@@ -7,11 +7,11 @@
  * less in five dimensions than the candidates allow.
  *
  * The mean of exp(score) over that density, with the flat density of motions as the prior, is the evidence (evidence.c), now of the
- * whole region. Mean and covariance of the pose are those of exp(TEMPER score): candidates of one wall, one border or one kind of
- * corner err together, and a product of likelihoods that takes them for independent is too sharp. Raised to a power below 1 it
- * spreads as widely as poses err (composite likelihoods: Pauli, Racugno and Ventura 2011; Ribatet, Cooley and Davison 2012). TEMPER
- * is from rendered rooms (tests/accuracy/wide_rooms --poses: errors over what is told). The prior of rotations is not: its edges
- * are no candidates, and manhattan.c counts what they have in common itself.
+ * whole region. Mean and covariance of the pose are those of exp(ASJ_TEMPER score): candidates of one wall, one border or one kind
+ * of corner err together, and a product of likelihoods that takes them for independent is too sharp. Raised to a power below 1 it
+ * spreads as widely as poses err (composite likelihoods: Pauli, Racugno and Ventura 2011; Ribatet, Cooley and Davison 2012).
+ * ASJ_TEMPER is from rendered rooms (tests/accuracy/wide_rooms --poses: errors over what is told). The prior of rotations is not:
+ * its edges are no candidates, and manhattan.c counts what they have in common itself.
  *
  * Drawn are the five parameters of the motion (model.c), or the three of a camera that only turns. Planes follow as the equations
  * of adjust.c say, n' = -H_nn^-1 H_nm m', and are integrated over by Laplace's method. Standard deviations of a round: those of the
@@ -19,7 +19,7 @@
  * without bound. Of a covariance of draws, few of which weigh anything at first, LEAST of Laplace's is a part: it is as long and
  * thin as what the candidates allow. Where fewer than ENOUGH weigh anything in the end, their spread is that of chance, and
  * Laplace's tells the rest. (Of 63 motions a tenth have fewer than 43, one has 1.5: it was told to .71 of Laplace's deviations
- * without TEMPER, which asks for more than these.)
+ * without ASJ_TEMPER, which asks for more than these.)
  * (Where cameras are near each other, turning and moving look alike, and the two together are known far better than either: with
  * one sd for all parameters in place of it hardly a draw weighs anything.) */
 #include "posterior.h"
@@ -41,17 +41,11 @@
 #define ROUNDS 3
 #define ALL (ROUNDS * DRAWS)
 #define SPREADS 3
-#define TEMPER 0.5
 #define MOTION 5 /* parameters at most */
 #define LEAST 0.3        /* of Laplace's covariance */
 #define UNSEEN 1.28      /* variance over that of ALL draws: of six right candidates these spread .88 as far as 8000 do, of
                           * many .99 (test_posterior.c) */
-#define LEAST_SD 1e-3    /* rad: nearer motions are one */
 #define MOST_SD 0.3      /* rad */
-#define WITHIN 4.0       /* standard deviations */
-#define MOST_TURN 0.6    /* rad */
-#define BESIDE 0.14      /* rad: 8 degrees, turn and translation together */
-#define LEAST_WEIGHT 0.01
 
 typedef char models_are_inverted[ASJ_MODEL_PARAMETERS <= ASJ_MOST_INVERTED ? 1 : -1];
 
@@ -106,8 +100,7 @@ static double log_density(const cloud *c, const double x[MOTION])
     return sum > 0 ? log(sum / SPREADS) - 0.5 * n * log(2 * ASJ_PI) - c->log_root : -HUGE_VAL;
 }
 
-/* Of a combination of the parameters. */
-static double largest_sd(const double covariance[MOTION * MOTION], int32_t n)
+double asj_largest_sd(const double covariance[MOTION * MOTION], int32_t n)
 {
     double values[MOTION], vectors[MOTION * MOTION];
     asj_symmetric_eigen(covariance, n, values, vectors);
@@ -245,7 +238,7 @@ static int32_t summarise(const draw *draws, int32_t count, int32_t size, double 
     double weights[ALL], sum;
     memset(mean, 0, MOTION * sizeof *mean);
     memset(covariance, 0, MOTION * MOTION * sizeof *covariance);
-    if (!(weigh(draws, count, TEMPER, weights, &sum) > -HUGE_VAL))
+    if (!(weigh(draws, count, ASJ_TEMPER, weights, &sum) > -HUGE_VAL))
         return 0;
     for (int32_t n = 0; n < count; n++)
         for (int32_t k = 0; k < size; k++)
@@ -261,7 +254,7 @@ static int32_t summarise(const draw *draws, int32_t count, int32_t size, double 
 static double effective(const draw *draws, int32_t count)
 {
     double weights[ALL], sum, squares = 0;
-    if (!(weigh(draws, count, TEMPER, weights, &sum) > -HUGE_VAL))
+    if (!(weigh(draws, count, ASJ_TEMPER, weights, &sum) > -HUGE_VAL))
         return 0;
     for (int32_t n = 0; n < count; n++)
         squares += weights[n] * weights[n];
@@ -292,12 +285,12 @@ static int32_t draw_rounds(asj_context *context, job *j, cloud *last, double cov
     return 1;
 }
 
-/* The cloud of Laplace's approximation as wide as TEMPER makes it. */
+/* The cloud of Laplace's approximation as wide as ASJ_TEMPER makes it. */
 static void widen(cloud *c)
 {
     for (int32_t k = 0; k < c->size * c->size; k++)
-        c->root[k] /= sqrt(TEMPER);
-    c->log_root -= 0.5 * c->size * log(TEMPER);
+        c->root[k] /= sqrt(ASJ_TEMPER);
+    c->log_root -= 0.5 * c->size * log(ASJ_TEMPER);
 }
 
 void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_adjust_scratch *scratch, asj_model *model)
@@ -312,7 +305,7 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
     model->evidence = asj_log_evidence(set, model, &scratch[0]);
     if (!start(set, model, &scratch[0], &c, &log_planes))
         return;
-    if (largest_sd(model->covariance, c.size) > MOST_SD) { /* a direction that nothing determines has no middle */
+    if (asj_largest_sd(model->covariance, c.size) > MOST_SD) { /* a direction that nothing determines has no middle */
         model->peak = model->evidence;
         model->settled = 1;
         return;
@@ -331,83 +324,7 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
     memcpy(moved.covariance, covariance, sizeof covariance);
     const double unknown = fmax(0, 1 - effective(draws, ALL) / ENOUGH);
     for (int32_t k = 0; k < MOTION * MOTION; k++)
-        moved.covariance[k] = UNSEEN * moved.covariance[k] + unknown / TEMPER * model->covariance[k];
+        moved.covariance[k] = UNSEEN * moved.covariance[k] + unknown / ASJ_TEMPER * model->covariance[k];
     moved.settled = 1;
     *model = moved;
-}
-
-/* The other motion in the parameters of the first; 0 when it is too far away for that. */
-static int32_t difference(const asj_model *model, const asj_model *other, double at[MOTION])
-{
-    double turn[9], axes[2][3];
-    asj_multiply3_transposed(other->rotation, model->rotation, turn);
-    const double along = asj_dot3(other->translation, model->translation);
-    if (asj_rotation_angle(turn) > MOST_TURN || !(along > cos(MOST_TURN)))
-        return 0;
-    asj_vector_of_rotation(turn, at);
-    asj_translation_axes(model->translation, axes[0], axes[1]);
-    for (int32_t k = 0; k < 2; k++)
-        at[3 + k] = asj_dot3(axes[k], other->translation) / along;
-    return 1;
-}
-
-int32_t asj_is_within(const asj_model *settled, const asj_model *other)
-{
-    double at[MOTION], covariance[MOTION * MOTION], y[MOTION], square = 0;
-    if (!settled->settled || !difference(settled, other, at))
-        return 0;
-    memcpy(covariance, settled->covariance, sizeof covariance);
-    for (int32_t k = 0; k < MOTION; k++)
-        covariance[k * (MOTION + 1)] += LEAST_SD * LEAST_SD;
-    memcpy(y, at, sizeof y);
-    if (!asj_cholesky_solve(covariance, MOTION, y, NULL))
-        return 0;
-    for (int32_t k = 0; k < MOTION; k++)
-        square += at[k] * y[k];
-    return square < WITHIN * WITHIN;
-}
-
-/* How likely another motion is, of the best one. What is beside that explains the same candidates, and a few more by how these are
- * out together: exp(TEMPER evidence), with the density of rotations in full, as above. What is far away has other candidates. (A
- * rendered room whose matches lie on one wall: of two motions 2.2 degrees apart the wrong one has 330 nats for 320, and 6 fewer for
- * its rotation. It was told to .4 degrees.) */
-static double weight_beside(const asj_pairs *set, const asj_model *best, const asj_model *other, int32_t is_near)
-{
-    const double more = other->evidence - (other->settled ? best->evidence : fmin(best->peak, best->evidence));
-    const double rotation = is_near ? asj_rotation_prior(set, other->rotation) - asj_rotation_prior(set, best->rotation) : 0;
-    return fmin(1, exp(TEMPER * more + (1 - TEMPER) * rotation));
-}
-
-/* The square of how far it is. */
-static double size_of(const double at[MOTION])
-{
-    double square = 0;
-    for (int32_t k = 0; k < MOTION; k++)
-        square += at[k] * at[k];
-    return square;
-}
-
-double asj_motion_covariance(const asj_pairs *set, const asj_model *models, int32_t count, int32_t best, double covariance[25])
-{
-    const asj_model *m = &models[best];
-    double at[MOTION];
-    memcpy(covariance, m->covariance, sizeof m->covariance);
-    for (int32_t n = 0; n < count; n++) {
-        const asj_model *o = &models[n];
-        if (n == best || o->kind != m->kind || o->struck != ASJ_NOT_STRUCK || asj_is_within(m, o))
-            continue;
-        const int32_t in_reach = difference(m, o, at), is_near = in_reach && size_of(at) < BESIDE * BESIDE;
-        const double weight = weight_beside(set, m, o, is_near);
-        if (!(weight > LEAST_WEIGHT))
-            continue;
-        if (!in_reach) { /* in no direction rather than another */
-            for (int32_t k = 0; k < MOTION; k++)
-                covariance[k * (MOTION + 1)] += weight * MOTION * MOST_TURN * MOST_TURN;
-            continue;
-        }
-        for (int32_t i = 0; i < MOTION; i++)
-            for (int32_t k = 0; k < MOTION; k++)
-                covariance[i * MOTION + k] += weight * at[i] * at[k];
-    }
-    return m->settled ? largest_sd(covariance, MOTION) : HUGE_VAL;
 }

@@ -9,11 +9,10 @@
  * of all that and the covariance of the parameters of its motion, five or three: posterior.c. scratch: one for each thread. */
 void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_adjust_scratch *scratch, asj_model *model);
 
-/* Essential matrices: is the other motion one of those that the settled one stands for? */
-int32_t asj_is_within(const asj_model *settled, const asj_model *other);
+/* The power of likelihoods with which what candidates allow spreads as widely as poses err: posterior.c. */
+#define ASJ_TEMPER 0.5
 
-/* Covariance of the motion's five parameters: that of the best model, and what others of its kind that stand are likely besides.
- * Returns the largest standard deviation of a combination of them, rad. */
-double asj_motion_covariance(const asj_pairs *set, const asj_model *models, int32_t count, int32_t best, double covariance[25]);
+/* The largest standard deviation of a combination of n parameters, 5 at most, with this n x n covariance. */
+double asj_largest_sd(const double covariance[25], int32_t n);
 
 #endif

@@ -7,6 +7,7 @@
 #include "geometry/evidence.h"
 #include "geometry/manhattan.h"
 #include "geometry/motions.h"
+#include "geometry/other_motions.h"
 #include "geometry/pairs.h"
 #include "geometry/peak.h"
 #include "geometry/posterior.h"
