@@ -14,7 +14,7 @@ typedef enum asj_looks {
     ASJ_LOOKS_LOST,         /* that of the images, and nothing of the upsampled ones, which do not settle what is open */
     ASJ_LOOKS_PLANE,        /* as ASJ_LOOKS_BY_UPSAMPLED, but its pose is open: both accept a plane, with poses at odds */
     ASJ_LOOKS_DISPUTED      /* neither, and no match that either contradicts: both accept a motion, not the same, and nothing
-                             * decides */
+                             * decides; or the upsampled ones have rivals with much more evidence than the images' */
 } asj_looks;
 
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled);

@@ -75,6 +75,27 @@ static void pictures_settle_what_is_ambiguous(void **state)
     }
 }
 
+/* Upsampled images that repeat themselves, with another motion or the same one in front: twice the evidence is in doubt of what the
+ * images accept, unless pictures agree better with that. */
+static void rivals_with_much_evidence_are_a_dispute(void **state)
+{
+    static const struct {
+        double own, upsampled, own_nfa, upsampled_nfa, degrees;
+        asj_looks looks;
+    } cases[] = {{.5, .5, -50, -101, 90, ASJ_LOOKS_DISPUTED},  {.5, .5, -50, -99, 90, ASJ_LOOKS_BY_IMAGES},
+                 {.7, .5, -50, -101, 90, ASJ_LOOKS_BY_IMAGES}, {.5, .7, -50, -99, 90, ASJ_LOOKS_BY_IMAGES},
+                 {.5, .5, -50, -101, 7, ASJ_LOOKS_BY_IMAGES},  {0, 0, -50, -101, 9, ASJ_LOOKS_DISPUTED}};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result own, upsampled;
+        make(&own, ASJ_GEOMETRY_ACCEPTED, cases[k].own_nfa, cases[k].degrees, cases[k].own);
+        make(&upsampled, ASJ_GEOMETRY_AMBIGUOUS, cases[k].upsampled_nfa, 0, cases[k].upsampled);
+        assert_int_equal(asj_looks_of(&own, &upsampled), cases[k].looks);
+        upsampled.geometry.status = ASJ_GEOMETRY_CHANCE;
+        assert_int_equal(asj_looks_of(&own, &upsampled), ASJ_LOOKS_BY_IMAGES);
+    }
+}
+
 /* What is surely accepted is looked at once more where the pictures hardly agree with it, and so much is not believed then. */
 static void little_agreement_is_looked_at_again(void **state)
 {
@@ -137,6 +158,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_decide_between_poses),
         cmocka_unit_test(pictures_settle_what_is_ambiguous),
+        cmocka_unit_test(rivals_with_much_evidence_are_a_dispute),
         cmocka_unit_test(little_agreement_is_looked_at_again),
         cmocka_unit_test(surer_poses_of_colours_are_taken),
         cmocka_unit_test(little_knowledge_decides_nothing),
