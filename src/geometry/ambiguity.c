@@ -7,7 +7,10 @@
  * have up to 1.6 times the log evidence of the best one that contradicts them, and with few matches more than that. And a rival
  * that is ASJ_SURE_RIVAL is one with SURE_SHARE of the best one's.
  *
- * What is contradicted (contradiction.c) is no rival, nor is what pictures disagree with, unless it is ASJ_SURE_RIVAL. */
+ * So is a motion that cannot be right beside the best one (contradiction.c), whatever they have matched, where pictures prefer it
+ * by more than it lacks of evidence. (By less, a right best motion with 71 nats more had a rival that pictures prefer by 18.)
+ *
+ * What is contradicted is no rival, nor is what pictures disagree with, unless it is ASJ_SURE_RIVAL. */
 #include "ambiguity.h"
 #include "contradiction.h"
 #include "core/angle.h"
@@ -63,9 +66,11 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
         const asj_comparison c = asj_compare_with(e, rival);
         const double nfa = asj_estimation_log10_nfa(e, rival), share = nfa / to_compare(e, m);
         const int32_t doubtful = c.votes_against_first > DOUBT;
-        if (c.contrary > (doubtful ? ASJ_CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
+        const int32_t contrary = c.contrary > (doubtful ? ASJ_CONTRARY_ALIKE : least_contradiction(m, rival, share));
+        const int32_t preferred = c.preference > fmax(0, m->evidence - rival->evidence); /* more than it lacks */
+        if ((contrary || preferred) &&
             !asj_is_contradicted(e, best, n, &c) &&
-            !(nfa > ASJ_SURE_RIVAL && asj_pictures_disagree(e, e->other.agreement, nfa))) {
+            !(nfa > ASJ_SURE_RIVAL && asj_pictures_disagree(e, *asj_agreement_of_other(e), nfa))) {
             second = n;
             *doubt = doubtful;
         }

@@ -12,14 +12,22 @@
  * rooms, where neither is right, by nearly all of them. So the way that is up never overrules what has more evidence: some cameras
  * are turned. But what turns the room over is never preferred to what leaves it upright, whatever colours and pictures say.
  *
+ * Two motions that are OTHER_MOTION apart cannot both be right, even if their matches are of different places and contradict each
+ * other in nothing. So of these pictures prefer one where they agree with it as usual, CLEARLY better than with the other one, and
+ * say SURELY_MORE nats more for it. The nats, because what sees one plane through two motions agrees as well with either, and says
+ * more for the one that has another plane as well; the share, because a plane that is large says much for any motion.
+ *
  * And pictures disagree with a geometry by themselves where they agree (picture_agreement.c) by less than AGREEMENT, which goes
  * down where it has MUCH evidence.
  *
- * What was tried: tests/accuracy/tried/geometry.md, "Colours and pictures together" and "Pictures that agree, or do not". */
+ * What was tried: tests/accuracy/tried/geometry.md, "Colours and pictures together", "Pictures that agree, or do not"
+ * and "Motions that exclude each other". */
 #include "contradiction.h"
 #include "colour_vote.h"
+#include "core/angle.h"
 #include "likelihood.h"
 #include "picture_vote.h"
+#include "small_matrix.h"
 #include "upright.h"
 
 #include <math.h>
@@ -34,6 +42,10 @@
 #define UPRIGHT_AHEAD 1.4 /* beside a right geometry such rivals have up to .71 of its evidence, in unrelated rooms .74 and more */
 #define AS_GOOD 0.1  /* of shares of agreement: smaller differences say nothing, .. */
 #define BETTER 4.0   /* .. and what agrees better by another 1/BETTER contradicts the other one */
+#define OTHER_MOTION (15 * ASJ_DEGREE)
+#define HALF 0.5          /* of the log evidence: so much more is not outweighed by pictures */
+#define CLEARLY 0.2       /* of shares of agreement */
+#define SURELY_MORE 10.0  /* nats; more is said for few wrong motions beside a right one, which has far more evidence (WEIGHT) */
 #define AGREEMENT 0.36 /* one right motion of 182 has less; a geometry of unrelated rooms has .29 in the median */
 #define MUCH (-60.0) /* log10 NFA */
 #define VERY_MUCH (-150.0)
@@ -89,11 +101,28 @@ static double better(const asj_estimation *e, asj_agreement one, asj_agreement t
     return BETTER * fmax(0, one.share - two.share - AS_GOOD);
 }
 
+/* Looks at the pictures through a geometry that is compared; look: 0 of the first one, 1 of the other. */
+static void see(asj_estimation *e, int32_t look, asj_compared *as)
+{
+    if (!e->pictures || as->is_seen)
+        return;
+    asj_pictures_look(e->pictures, &e->set, &as->model->view, as->probability, &e->pictures->looks[look]);
+    as->agreement = asj_pictures_agreement(&e->pictures->looks[look]);
+    as->is_seen = 1;
+}
+
+const asj_agreement *asj_agreement_of_other(asj_estimation *e)
+{
+    see(e, 1, &e->other);
+    return &e->other.agreement;
+}
+
 /* Adds what the pictures say. Of two that have matched nearly the same they only tell which has its planes where they are. */
-static void add_pictures(const asj_estimation *e, asj_comparison *c)
+static void add_pictures(asj_estimation *e, asj_comparison *c)
 {
     if (!e->pictures || !(c->contrary > CONTRARY_SEEN))
         return;
+    see(e, 1, &e->other);
     const asj_picture_look *first = &e->pictures->looks[0], *other = &e->pictures->looks[1];
     const double beside = asj_inliers(&e->set, e->first.probability) < ASJ_FEW_MATCHES ? OF_FEW : 1;
     const double against_first = asj_pictures_against(other, first);
@@ -102,19 +131,48 @@ static void add_pictures(const asj_estimation *e, asj_comparison *c)
     c->votes_against_first += against_first / beside;
 }
 
-/* Fills in what is compared of a geometry; look: 0 of the first one, 1 of the other. */
-static void look_at(asj_estimation *e, const asj_model *m, int32_t look, asj_compared *as)
+static int32_t exclude_each_other(const asj_model *a, const asj_model *b)
 {
+    double turn[9];
+    if (a->kind != ASJ_GEOMETRY_ESSENTIAL || b->kind != ASJ_GEOMETRY_ESSENTIAL)
+        return 0;
+    asj_multiply3_transposed(a->rotation, b->rotation, turn);
+    return asj_rotation_angle(turn) > OTHER_MOTION || asj_dot3(a->translation, b->translation) < cos(OTHER_MOTION);
+}
+
+/* Of two such motions, may pictures prefer one? What has far less evidence is not preferred, whatever they say. */
+static int32_t may_prefer(const asj_estimation *e)
+{
+    const double first = e->first.model->evidence, other = e->other.model->evidence;
+    return e->pictures && e->pictures->of[0].channel_count == ASJ_MOST_CHANNELS && fmin(first, other) > HALF * fmax(first, other) &&
+           exclude_each_other(e->first.model, e->other.model);
+}
+
+/* How many nats more the pictures say for the other one, where they prefer that; negative where they prefer the first one. */
+static double preference(asj_estimation *e)
+{
+    if (!may_prefer(e))
+        return 0;
+    const asj_agreement *first = &e->first.agreement, *other = asj_agreement_of_other(e);
+    if (fmin(first->known, other->known) < ASJ_LEAST_KNOWN)
+        return 0;
+    const double better = other->share - first->share, more = asj_agreement_said(*other) - asj_agreement_said(*first);
+    const int32_t agrees = fmax(first->share, other->share) > ASJ_USUAL_AGREEMENT;
+    return agrees && fabs(better) > CLEARLY && fabs(more) > SURELY_MORE && better * more > 0 ? more : 0;
+}
+
+static void take(asj_estimation *e, const asj_model *m, asj_compared *as)
+{
+    as->model = m;
+    as->is_seen = 0;
+    as->agreement = (asj_agreement){0, 0};
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, as->probability);
-    if (e->pictures) {
-        asj_pictures_look(e->pictures, &e->set, &m->view, as->probability, &e->pictures->looks[look]);
-        as->agreement = asj_pictures_agreement(&e->pictures->looks[look]);
-    }
 }
 
 void asj_compare_from(asj_estimation *e, int32_t number)
 {
-    look_at(e, &e->finalists[number], 0, &e->first);
+    take(e, &e->finalists[number], &e->first);
+    see(e, 0, &e->first);
     memset(e->elsewhere, 0, (size_t)e->set.count * sizeof *e->elsewhere);
     for (int32_t side = 0; side < 2; side++)
         find_elsewhere(e, side, e->first.probability);
@@ -122,10 +180,10 @@ void asj_compare_from(asj_estimation *e, int32_t number)
 
 asj_comparison asj_compare_with(asj_estimation *e, const asj_model *other)
 {
-    look_at(e, other, 1, &e->other);
+    take(e, other, &e->other);
     const double colours = e->set.has_colours
                                ? asj_colours_against(&e->set, e->first.probability, e->other.probability, e->vote) : 0;
-    asj_comparison c = {contradiction(e), colours, -colours, -colours};
+    asj_comparison c = {contradiction(e), colours, -colours, -colours, preference(e)};
     add_pictures(e, &c);
     return c;
 }

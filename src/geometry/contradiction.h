@@ -16,13 +16,19 @@ typedef struct asj_comparison {
     double against_other;
     double against_first;
     double votes_against_first; /* .. without how well the pictures agree with each of the two by itself */
+    double preference;    /* nats: so much more the pictures say for the other one, which cannot be right beside the first one;
+                           * negative: for the first one; 0: they prefer neither */
 } asj_comparison;
 
 /* Finalist `number` becomes the first one. */
 void asj_compare_from(asj_estimation *e, int32_t number);
 
-/* Compares another geometry with it. */
+/* Compares another geometry with it, which must stay until the next one is compared. */
 asj_comparison asj_compare_with(asj_estimation *e, const asj_model *other);
+
+/* How well the pictures agree with the other one. They are looked at when this is asked, or when they matter to the comparison:
+ * mostly its matches contradict too little for that. */
+const asj_agreement *asj_agreement_of_other(asj_estimation *e);
 
 /* Do colours, pictures or the way that is up contradict finalist `rival`, the other one, in favour of finalist `best`, the first
  * one? */

@@ -14,8 +14,10 @@
 
 /* One of two geometries that are compared (contradiction.h). */
 typedef struct asj_compared {
+    const asj_model *model;
     double *probability;     /* of each candidate, under it */
-    asj_agreement agreement; /* of the pictures with it; 0 and 0: nobody has shown them */
+    int32_t is_seen;         /* somebody has looked at the pictures through it; of the other one, when that is asked for */
+    asj_agreement agreement; /* of the pictures with it; 0 and 0: nobody has shown them, or has looked */
 } asj_compared;
 
 /* One call. */

@@ -68,6 +68,11 @@ static void add_cell(const asj_picture_look *look, int32_t n, gain *block)
     block->cells++;
 }
 
+double asj_agreement_said(asj_agreement agreement)
+{
+    return agreement.share * (agreement.known + LITTLE) - ASJ_USUAL_AGREEMENT * LITTLE;
+}
+
 asj_agreement asj_pictures_agreement(const asj_picture_look *look)
 {
     gain all = {0, 0, 0};

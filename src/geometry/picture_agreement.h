@@ -13,6 +13,9 @@ typedef struct asj_agreement {
     double known; /* nats: what they could say */
 } asj_agreement;
 
+/* What they say for the geometry, nats. */
+double asj_agreement_said(asj_agreement agreement);
+
 /* How well the pictures agree through a geometry. */
 asj_agreement asj_pictures_agreement(const asj_picture_look *look);
 

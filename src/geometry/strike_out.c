@@ -6,16 +6,26 @@
  * So are rivals with less evidence: they would make the pose uncertain (answer.c). */
 #include "strike_out.h"
 #include "contradiction.h"
+#include "core/angle.h"
 #include "geometry_options.h"
 #include "motions.h"
+#include "small_matrix.h"
 #include "stop.h"
 
 #include <math.h>
 
 #define OVERRULED 1.2 /* what speaks against the best one, where 1 contradicts another: it has the most evidence for it. (In 821
                        * pairs two right ones have more than that against them, the next 1.17; of 47 wrong ones in front 36.) */
+#define WEIGHT 1.5  /* of evidence, where pictures prefer a motion */
+#define SAME_MOTION (3 * ASJ_DEGREE)
 #define MOST_STRUCK 4 /* times that the best one changes: in 198 pairs of rooms once in six, never twice */
 #define MOST_TRIED 4  /* others, each time: of what is preferred to the best one something else may have more evidence still */
+
+/* Do pictures prefer one of two motions so clearly that they outweigh the evidence which the other one has more? Nats. */
+static int32_t outweighs(double preference, double evidence)
+{
+    return preference > fmax(0, WEIGHT * evidence);
+}
 
 /* How much colours and pictures speak for each finalist against number `best`; 0 where that is not enough, or is no matter. */
 static void weigh(asj_estimation *e, int32_t best, double for_it[ASJ_MOST_MODELS])
@@ -29,8 +39,9 @@ static void weigh(asj_estimation *e, int32_t best, double for_it[ASJ_MOST_MODELS
             (asj_finalist_turns_over(e, n) && !asj_finalist_turns_over(e, best)))
             continue;
         const asj_comparison c = asj_compare_with(e, m);
-        if (c.against_first > OVERRULED && !asj_pictures_disagree(e, e->other.agreement, nfa))
-            for_it[n] = c.against_first;
+        const int32_t preferred = outweighs(c.preference, e->finalists[best].evidence - m->evidence);
+        if ((preferred || c.against_first > OVERRULED) && !asj_pictures_disagree(e, *asj_agreement_of_other(e), nfa))
+            for_it[n] = fmax(OVERRULED, c.against_first);
     }
 }
 
@@ -41,7 +52,10 @@ static void strike(asj_estimation *e, int32_t chosen)
     asj_compare_from(e, chosen);
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++) {
         asj_model *m = &e->finalists[n];
-        if (asj_model_stands(m) && m->evidence > c->evidence && asj_compare_with(e, m).against_other > 1)
+        if (!asj_model_stands(m) || !(m->evidence > c->evidence))
+            continue;
+        const asj_comparison between = asj_compare_with(e, m);
+        if (between.against_other > 1 || outweighs(-between.preference, m->evidence - c->evidence))
             m->struck = ASJ_STRUCK_FOR_ANOTHER;
     }
 }
@@ -56,7 +70,7 @@ static void strike_rivals(asj_estimation *e)
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++)
         if (n != best && n != e->focal_at && asj_model_stands(&e->finalists[n])) {
             const asj_comparison c = asj_compare_with(e, &e->finalists[n]);
-            if (c.contrary > ASJ_CONTRARY_ALIKE && asj_is_contradicted(e, best, n, &c))
+            if (c.preference < 0 || (c.contrary > ASJ_CONTRARY_ALIKE && asj_is_contradicted(e, best, n, &c)))
                 e->finalists[n].struck = ASJ_STRUCK_AS_RIVAL;
         }
 }
@@ -68,6 +82,26 @@ static asj_status focus_back(asj_estimation *e, int32_t chosen, const asj_model 
     e->focal_at = focal_at;
     e->finalists[chosen] = *before;
     return asj_focal_search_turn(e->focal_search, focal);
+}
+
+static int32_t are_the_same(const asj_model *a, const asj_model *b)
+{
+    double turn[9];
+    if (a->kind != ASJ_GEOMETRY_ESSENTIAL || b->kind != ASJ_GEOMETRY_ESSENTIAL)
+        return 0;
+    asj_multiply3_transposed(a->rotation, b->rotation, turn);
+    return asj_rotation_angle(turn) < SAME_MOTION && asj_dot3(a->translation, b->translation) > cos(SAME_MOTION);
+}
+
+/* Of the same motion the one that has been followed is the answer. */
+static void strike_twins(asj_estimation *e, int32_t chosen)
+{
+    const asj_model *c = &e->finalists[chosen];
+    for (int32_t n = 0; n < e->count; n++) {
+        asj_model *m = &e->finalists[n];
+        if (asj_model_stands(m) && m->evidence > c->evidence && are_the_same(m, c))
+            m->struck = ASJ_STRUCK_FOR_ANOTHER;
+    }
 }
 
 /* Number `chosen` instead of the best one, and of all others that it contradicts. *stands: 0 when something else would be the best
@@ -93,6 +127,7 @@ static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stand
         else if (status == ASJ_OK && !e->finalists[chosen].settled)
             status = asj_estimation_settle(e, &e->finalists[chosen]);
     }
+    strike_twins(e, chosen);
     *stands = asj_estimation_best(e, ASJ_GEOMETRY_AUTO) == chosen;
     for (int32_t n = 0; n < e->count && !*stands; n++)
         e->finalists[n].struck = struck[n];
