@@ -65,9 +65,9 @@ static asj_status stretch(asj_context *context, const asj_image *image, const as
     return resize(context, (int32_t)width, (int32_t)height, v);
 }
 
-static asj_status detect(asj_context *context, const asj_detect_options *options, asj_view *v)
+static asj_status detect(asj_context *context, const asj_detect_options *options, asj_luma_found *luma, asj_view *v)
 {
-    const asj_status status = asj_detect(context, &v->stretched, options, &v->found);
+    const asj_status status = asj_detect_with_luma(context, &v->stretched, options, luma, &v->found);
     if (status != ASJ_OK)
         return status;
     const size_t count = v->found->junction_count;
@@ -96,7 +96,8 @@ static void end_part(asj_context *context)
 }
 
 asj_status asj_look_open(asj_context *context, const asj_image *const images[2], const asj_stretch *wanted,
-                         const asj_detect_options *options, double progress_from, double progress_part, asj_look *look)
+                         const asj_detect_options *options, asj_luma_found *luma, double progress_from, double progress_part,
+                         asj_look *look)
 {
     memset(look, 0, sizeof *look);
     look->context = context;
@@ -108,7 +109,7 @@ asj_status asj_look_open(asj_context *context, const asj_image *const images[2],
         status = stretch(context, images[n], wanted, &look->views[n]);
     for (int32_t n = 0; n < 2 && status == ASJ_OK; n++) {
         begin_part(look, n * DETECTION, DETECTION);
-        status = detect(context, options, &look->views[n]);
+        status = detect(context, options, luma ? &luma[n] : NULL, &look->views[n]);
     }
     end_part(context);
     return status;

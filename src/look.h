@@ -4,6 +4,7 @@
 #define ASJ_SRC_LOOK_H
 
 #include "core/context.h"
+#include "detect/luma_step.h"
 
 #include <asj/detect.h>
 #include <asj/match.h>
@@ -28,9 +29,11 @@ typedef struct asj_look {
 int32_t asj_look_fits(const asj_image *image, const asj_stretch *stretch);
 
 /* Stretches both images and detects in them: `progress_part` of the whole call, from `progress_from` on, is what this and
- * asj_look_match() do together. To be closed whatever comes of it. Errors as of asj_match_images(). */
+ * asj_look_match() do together. luma: NULL, or what is known of both images so stretched, or will be (detect/luma_step.h). To be
+ * closed whatever comes of it. Errors as of asj_match_images(). */
 asj_status asj_look_open(asj_context *context, const asj_image *const images[2], const asj_stretch *stretch,
-                         const asj_detect_options *options, double progress_from, double progress_part, asj_look *look);
+                         const asj_detect_options *options, asj_luma_found *luma, double progress_from, double progress_part,
+                         asj_look *look);
 
 /* Matches what was detected; everything in the result is in pixels of the images as they are, but its times are those of the
  * matching alone. */

@@ -29,7 +29,8 @@
  *
  * Colours. Where a geometry is asked, and neither look has one that is sure, agrees with the pictures and tells a motion, the
  * detector looks at colours, too (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright
- * there are corners that only these show. match/looks.c says what is believed.
+ * there are corners that only these show. match/looks.c says what is believed. What the luma has is known from the look without
+ * them.
  *
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
  * often. So a stretched look needs ENOUGH matches, and as many more than there are.
@@ -72,6 +73,7 @@ typedef struct search {
     const asj_match_options *options;
     double scale; /* at most 1: so many times as long, large images have LARGEST pixels at most */
     asj_match_result *best;
+    asj_luma_found luma[2][2]; /* of looks that are taken with colours once more, and upsampled; of both images */
     double stage_ms[ASJ_STAGE_COUNT]; /* of all looks */
 } search;
 
@@ -94,13 +96,32 @@ static int32_t goes_on(const search *s)
     return !asj_geometry_is_open(&s->best->geometry) && answered(s, s->best) < enough;
 }
 
+static int32_t asks_colours(const search *s)
+{
+    return asks_geometry(s) && s->options->look_at_colours && !s->detect_options->colours;
+}
+
+/* What is not stretched may be looked at with colours, too. */
+static asj_luma_found *luma_of(search *s, const asj_stretch *stretch, const asj_detect_options *detect_options)
+{
+    const int32_t may = asks_colours(s) || detect_options->colours;
+    return may && stretch->x == s->scale && stretch->y == s->scale ? s->luma[detect_options->first_octave < 0] : NULL;
+}
+
+static void forget_luma(search *s)
+{
+    for (int32_t n = 0; n < 4; n++)
+        asj_luma_found_free(&s->context->memory, &s->luma[n / 2][n % 2]);
+}
+
 /* own: the images' own matches, of the upsampled ones that are looked at; NULL: these are none. */
 static asj_status look_by(search *s, const asj_match_result *own, const asj_stretch *stretch,
                           const asj_detect_options *detect_options, const asj_match_options *options, double from, double part,
                           asj_match_result **found)
 {
     asj_look eyes;
-    asj_status status = asj_look_open(s->context, s->images, stretch, detect_options, from, part, &eyes);
+    asj_status status = asj_look_open(s->context, s->images, stretch, detect_options, luma_of(s, stretch, detect_options), from,
+                                      part, &eyes);
     if (status == ASJ_OK)
         status = own ? asj_look_match_upsampled(&eyes, options, own, found) : asj_look_match(&eyes, options, found);
     if (status == ASJ_OK) {
@@ -213,7 +234,7 @@ static asj_status have_colours(const search *s, int32_t *both)
 
 static int32_t may_look_at_colours(const search *s)
 {
-    return s->options->look_at_colours && !s->detect_options->colours && asj_looks_want_other(s->best);
+    return asks_colours(s) && asj_looks_want_other(s->best);
 }
 
 static asj_status look_with_colours(search *s, double from, double part)
@@ -356,6 +377,7 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
         status = asj_match_request_check(context, s.options);
     if (status == ASJ_OK)
         status = is_automatic(wanted) ? look_for_answer(&s) : look(&s, wanted, s.detect_options, s.options, 0, 1, &s.best);
+    forget_luma(&s);
     if (status == ASJ_OK)
         status = asj_finish_pose(context, &s.best);
     if (status != ASJ_OK) {

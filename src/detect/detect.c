@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_detect(): the paper's steps in order. */
 #include "core/backend.h"
+#include "luma_step.h"
 #include "octaves.h"
 #include "region.h"
 #include "result.h"
@@ -94,18 +95,27 @@ static asj_status run_octaves(asj_detection_run *run)
     return status == ASJ_OK ? asj_step_merge_octaves(run) : status;
 }
 
+static asj_status run_plane(asj_detection_run *run)
+{
+    const int keeps = run->plane == ASJ_PLANE_LUMA && asj_luma_may_be_kept(run);
+    asj_status status = ASJ_OK;
+    if (keeps && run->luma->is_known)
+        return asj_step_recall_luma(run);
+    if (run->plane > 0)
+        status = asj_detection_run_start_plane(run);
+    if (status == ASJ_OK)
+        status = run_octaves(run);
+    if (status == ASJ_OK)
+        status = asj_step_merge_planes(run);
+    return status == ASJ_OK && keeps && !run->options->colours ? asj_step_keep_luma(run) : status;
+}
+
 /* The luma, and planes of colour where there are some. */
 static asj_status run_planes(asj_detection_run *run)
 {
     asj_status status = ASJ_OK;
-    for (run->plane = 0; run->plane < run->planes.count && status == ASJ_OK; run->plane++) {
-        if (run->plane > 0)
-            status = asj_detection_run_start_plane(run);
-        if (status == ASJ_OK)
-            status = run_octaves(run);
-        if (status == ASJ_OK)
-            status = asj_step_merge_planes(run);
-    }
+    for (run->plane = 0; run->plane < run->planes.count && status == ASJ_OK; run->plane++)
+        status = run_plane(run);
     run->plane = 0;
     return status;
 }
@@ -151,12 +161,13 @@ static asj_status finish(asj_detection_run *run, double start, asj_detection **r
 }
 
 static asj_status detect(asj_context *context, const asj_image *image, const asj_region *region, const asj_detect_options *options,
-                         double start, asj_detection **result)
+                         asj_luma_found *luma, double start, asj_detection **result)
 {
     asj_detection_run run;
     asj_status status = asj_detection_run_begin(&run, context, image, options, result);
     run.clock = start;
     run.region = run.whole_region = region;
+    run.luma = luma;
     if (status == ASJ_OK)
         status = asj_region_check(context, image, region);
     if (status == ASJ_OK)
@@ -167,8 +178,8 @@ static asj_status detect(asj_context *context, const asj_image *image, const asj
     return status;
 }
 
-asj_status asj_detect_region(asj_context *context, const asj_image *image, const asj_region *region,
-                             const asj_detect_options *options, asj_detection **result)
+static asj_status detect_in(asj_context *context, const asj_image *image, const asj_region *region,
+                            const asj_detect_options *options, asj_luma_found *luma, asj_detection **result)
 {
     const double start = asj_clock_ms();
     asj_status status;
@@ -178,9 +189,23 @@ asj_status asj_detect_region(asj_context *context, const asj_image *image, const
         return ASJ_ERROR_ARGUMENT;
     asj_backend_begin(context);
     do
-        status = detect(context, image, region, options, start, result);
+        status = detect(context, image, region, options, luma, start, result);
     while (asj_backend_retry(context, status));
     return status;
+}
+
+asj_status asj_detect_region(asj_context *context, const asj_image *image, const asj_region *region,
+                             const asj_detect_options *options, asj_detection **result)
+{
+    return detect_in(context, image, region, options, NULL, result);
+}
+
+asj_status asj_detect_with_luma(asj_context *context, const asj_image *image, const asj_detect_options *options,
+                                asj_luma_found *luma, asj_detection **result)
+{
+    if (result)
+        *result = NULL;
+    return detect_in(context, image, NULL, options, luma, result);
 }
 
 asj_status asj_detect_into(asj_context *context, const asj_image *image, const asj_detect_options *options, asj_detection **result)

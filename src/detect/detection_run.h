@@ -62,6 +62,7 @@ typedef struct asj_detection_run {
     asj_hypothesis *found;           /* of the planes that are done, likewise */
     size_t found_count, found_capacity;
     size_t candidate_total, isotropic_total; /* and how many of these they had */
+    struct asj_luma_found *luma;     /* luma_step.h; NULL: not kept */
     int32_t size;                    /* with three_sizes: 0, 1, 2; */
     asj_sizes sizes;                 /* what those before it have found, */
     const asj_image *whole;          /* the caller's image and region; while another size is looked at .. */

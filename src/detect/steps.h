@@ -36,6 +36,9 @@ asj_status asj_sizes_put_rejected(asj_detection_run *run); /* sizes_step.c: what
 void asj_sizes_tell_votes(asj_detection_run *run);        /* sizes_step.c: hypotheses of copies that are votes */
 size_t asj_sizes_votes_last(asj_detection_run *run);      /* sizes_step.c: these behind the others; how many */
 asj_status asj_step_merge_sizes(asj_detection_run *run);  /* sizes_step.c: what two looks have */
+int asj_luma_may_be_kept(const asj_detection_run *run);   /* luma_step.c: for another pass that looks at colours, */
+asj_status asj_step_keep_luma(asj_detection_run *run);    /* what the luma has; */
+asj_status asj_step_recall_luma(asj_detection_run *run);  /* in such a pass */
 asj_status asj_step_list(asj_detection_run *run);         /* planes_step.c: the hypotheses of all planes; ends of branches */
 asj_status asj_step_join(asj_detection_run *run);       /* edges_step.c: edges between junctions */
 

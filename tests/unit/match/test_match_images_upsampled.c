@@ -402,7 +402,7 @@ static void a_quarter_is_half_of_a_half(void **state)
     for (int k = 0; k < WIDTH * HEIGHT; k++)
         ramp[k] = (uint8_t)(k % WIDTH / 2 + k / WIDTH / 10);
     asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
-    assert_int_equal(asj_look_open(context, images, &stretch, &options, 0, 1, &eyes), ASJ_OK);
+    assert_int_equal(asj_look_open(context, images, &stretch, &options, NULL, 0, 1, &eyes), ASJ_OK);
     const asj_image *small = &eyes.views[0].stretched;
     assert_true(small->width == 81 && small->height == 75);
     for (int y = 1; y < 74; y++)

@@ -155,7 +155,7 @@ static void octaves_are_those_of_the_image(void **state)
     for (size_t k = 0; k < UNIT_COUNT(looks); k++) {
         asj_look look;
         int32_t coarse = 0;
-        assert_int_equal(asj_look_open(context, images, &looks[k].by, &detector, 0, 1, &look), ASJ_OK);
+        assert_int_equal(asj_look_open(context, images, &looks[k].by, &detector, NULL, 0, 1, &look), ASJ_OK);
         for (int n = 0; n < 2; n++)
             for (uint32_t i = 0; i < look.views[n].found->junction_count; i++) {
                 const int32_t octave = look.views[n].found->junctions[i].octave, finer = octave - looks[k].finer;
