@@ -136,7 +136,8 @@ static asj_status match_lists(const asj_look *look, const junction_list lists[2]
     begin_part(look, 2 * DETECTION, 1 - 2 * DETECTION);
     const asj_match_source sources[2] = {{&v[0].stretched, lists[0].list, lists[0].count},
                                          {&v[1].stretched, lists[1].list, lists[1].count}};
-    const asj_status status = asj_match_look(look->context, sources, &stretched, own != NULL, own ? &known : NULL, result);
+    const asj_status status = asj_match_look(look->context, sources, &stretched, own != NULL, own ? &known : NULL,
+                                             look->alignments, result);
     end_part(look->context);
     if (status != ASJ_OK)
         return status;

@@ -5,6 +5,7 @@
 
 #include "core/context.h"
 #include "detect/luma_step.h"
+#include "match/alignments.h"
 
 #include <asj/detect.h>
 #include <asj/match.h>
@@ -22,6 +23,7 @@ typedef struct asj_look {
     asj_context *context;
     asj_view views[2];
     asj_stretch stretch;
+    asj_alignments *alignments; /* of images so stretched; NULL: none are kept */
     double progress_from, progress_part; /* of the caller's whole */
 } asj_look;
 

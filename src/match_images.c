@@ -74,6 +74,7 @@ typedef struct search {
     double scale; /* at most 1: so many times as long, large images have LARGEST pixels at most */
     asj_match_result *best;
     asj_luma_found luma[2][2]; /* of looks that are taken with colours once more, and upsampled; of both images */
+    asj_alignments *alignments; /* of the same looks */
     double stage_ms[ASJ_STAGE_COUNT]; /* of all looks */
 } search;
 
@@ -101,17 +102,22 @@ static int32_t asks_colours(const search *s)
     return asks_geometry(s) && s->options->look_at_colours && !s->detect_options->colours;
 }
 
-/* What is not stretched may be looked at with colours, too. */
-static asj_luma_found *luma_of(search *s, const asj_stretch *stretch, const asj_detect_options *detect_options)
+static int32_t may_look_at_colours(const search *s)
 {
-    const int32_t may = asks_colours(s) || detect_options->colours;
-    return may && stretch->x == s->scale && stretch->y == s->scale ? s->luma[detect_options->first_octave < 0] : NULL;
+    return asks_colours(s) && (!s->best || asj_looks_want_other(s->best));
 }
 
-static void forget_luma(search *s)
+/* Is what is not stretched looked at with colours, or may it be? */
+static int32_t may_come_again(const search *s, const asj_stretch *stretch, const asj_detect_options *detect_options)
+{
+    return (detect_options->colours || may_look_at_colours(s)) && stretch->x == s->scale && stretch->y == s->scale;
+}
+
+static void forget(search *s)
 {
     for (int32_t n = 0; n < 4; n++)
         asj_luma_found_free(&s->context->memory, &s->luma[n / 2][n % 2]);
+    asj_alignments_free(&s->context->memory, s->alignments);
 }
 
 /* own: the images' own matches, of the upsampled ones that are looked at; NULL: these are none. */
@@ -120,8 +126,10 @@ static asj_status look_by(search *s, const asj_match_result *own, const asj_stre
                           asj_match_result **found)
 {
     asj_look eyes;
-    asj_status status = asj_look_open(s->context, s->images, stretch, detect_options, luma_of(s, stretch, detect_options), from,
-                                      part, &eyes);
+    const int32_t again = may_come_again(s, stretch, detect_options);
+    asj_luma_found *luma = again ? s->luma[detect_options->first_octave < 0] : NULL;
+    asj_status status = asj_look_open(s->context, s->images, stretch, detect_options, luma, from, part, &eyes);
+    eyes.alignments = again ? s->alignments : NULL;
     if (status == ASJ_OK)
         status = own ? asj_look_match_upsampled(&eyes, options, own, found) : asj_look_match(&eyes, options, found);
     if (status == ASJ_OK) {
@@ -232,11 +240,6 @@ static asj_status have_colours(const search *s, int32_t *both)
     return status;
 }
 
-static int32_t may_look_at_colours(const search *s)
-{
-    return asks_colours(s) && asj_looks_want_other(s->best);
-}
-
 static asj_status look_with_colours(search *s, double from, double part)
 {
     const asj_stretch stretch = {s->scale, s->scale};
@@ -318,6 +321,8 @@ static asj_status look_for_answer(search *s)
 {
     const double done = FIRST + CLOSER + COLOURED, part = (1 - done) / GLANCING;
     asj_status status = look(s, &as_it_is, s->detect_options, s->options, 0, FIRST, &s->best);
+    if (!may_look_at_colours(s))
+        forget(s); /* as soon as it is known: it is a tenth of all memory */
     if (status == ASJ_OK) {
         asj_optional_begin(s->context);
         status = asj_optional_end(s->context, s->scale < 1 ? look_smaller(s, FIRST, CLOSER)
@@ -367,7 +372,8 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
     asj_detect_options_preset(&for_matching, ASJ_PRESET_MATCH);
     asj_match_options_init(&defaults);
     wanted = wanted ? wanted : &as_it_is;
-    search s = {.context = context, .images = {image1, image2}};
+    asj_alignments alignments = {NULL, NULL, 0, 0, 0};
+    search s = {.context = context, .images = {image1, image2}, .alignments = &alignments};
     s.detect_options = detect_options ? detect_options : &for_matching;
     s.options = options ? options : &defaults;
     s.scale = scale_of(&s);
@@ -377,7 +383,7 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
         status = asj_match_request_check(context, s.options);
     if (status == ASJ_OK)
         status = is_automatic(wanted) ? look_for_answer(&s) : look(&s, wanted, s.detect_options, s.options, 0, 1, &s.best);
-    forget_luma(&s);
+    forget(&s);
     if (status == ASJ_OK)
         status = asj_finish_pose(context, &s.best);
     if (status != ASJ_OK) {

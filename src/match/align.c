@@ -142,26 +142,43 @@ static float combine(float canonical2, float similarity)
     return sqrtf(canonical * 2 * rest);
 }
 
-/* `side` is the image of the template. */
-static void align_one(const asj_match_run *run, const asj_aligner *aligner, const asj_template *t, int32_t side, asj_candidate *c)
+/* All that decides what comes of it; `side` is the image of the template. */
+static asj_alignment_key key_of(const asj_match_run *run, const asj_candidate *c, int32_t side, int32_t steps)
 {
-    if (!t->usable) {
-        c->similarity = -1;
-    } else {
-        const asj_l_junction *l = asj_match_run_l(run, c, 1 - side);
-        const double *map = asj_candidate_map(c, side);
-        const asj_disc_pose start = {(double)l->x, (double)l->y, {map[0], map[1], map[2], map[3]}};
-        const asj_alignment found = asj_align(aligner, t, &run->image[1 - side]->pyramid, &start);
-        asj_linear forth;
-        c->similarity = found.similarity;
-        if (found.moved && asj_affine_invert(found.pose.linear, forth.from)) {
-            double *move = side == 0 ? c->move2 : c->move1;
-            memcpy(forth.to, found.pose.linear, sizeof forth.to);
-            memcpy(c->map.to, side == 0 ? forth.to : forth.from, sizeof forth.to);
-            memcpy(c->map.from, side == 0 ? forth.from : forth.to, sizeof forth.to);
-            move[0] = found.pose.x - start.x;
-            move[1] = found.pose.y - start.y;
-        }
+    const asj_l_junctions *in = &run->image[side]->l_junctions;
+    const asj_l_junction *l = asj_match_run_l(run, c, 1 - side);
+    const uint32_t location = in->location[asj_candidate_l(c, side)];
+    const double *map = asj_candidate_map(c, side);
+    return (asj_alignment_key){{map[0], map[1], map[2], map[3]}, in->location_x[location], in->location_y[location],
+                               l->x, l->y, (uint16_t)side, (uint16_t)steps,
+                               {run->image[0]->l_junctions.upsampled != 0, run->image[1]->l_junctions.upsampled != 0}};
+}
+
+/* Of a template that is usable or not. */
+static void align_key(const asj_match_run *run, const asj_aligner *aligner, const asj_template *t, asj_known_alignment *known)
+{
+    const asj_alignment_key *key = &known->key;
+    const asj_disc_pose start = {(double)key->to_x, (double)key->to_y,
+                                 {key->linear[0], key->linear[1], key->linear[2], key->linear[3]}};
+    const asj_alignment found = t->usable ? asj_align(aligner, t, &run->image[1 - key->side]->pyramid, &start)
+                                          : (asj_alignment){start, -1, -1, 0};
+    known->pose = found.pose;
+    known->similarity = found.similarity;
+    known->moved = found.moved;
+}
+
+static void tell(const asj_known_alignment *known, asj_candidate *c)
+{
+    const int32_t side = known->key.side;
+    asj_linear forth;
+    c->similarity = known->similarity;
+    if (known->moved && asj_affine_invert(known->pose.linear, forth.from)) {
+        double *move = side == 0 ? c->move2 : c->move1;
+        memcpy(forth.to, known->pose.linear, sizeof forth.to);
+        memcpy(c->map.to, side == 0 ? forth.to : forth.from, sizeof forth.to);
+        memcpy(c->map.from, side == 0 ? forth.from : forth.to, sizeof forth.to);
+        move[0] = known->pose.x - (double)known->key.to_x;
+        move[1] = known->pose.y - (double)known->key.to_y;
     }
     c->distance2 = combine(c->distance2, c->similarity);
 }
@@ -179,6 +196,9 @@ static void drop_unlike(asj_candidates *candidates)
  * location p. They are worked on together, so that each template is made once. */
 typedef struct grouping {
     uint32_t *start, *order, *group;
+    asj_alignments *known;
+    uint32_t *number; /* of each in these, */
+    size_t before;    /* of which so many were known before */
 } grouping;
 
 static void group_by_template(const asj_match_run *run, const asj_candidates *candidates, const grouping *g)
@@ -198,38 +218,62 @@ static void group_by_template(const asj_match_run *run, const asj_candidates *ca
         g->order[g->start[g->group[k] + 1]++] = (uint32_t)k;
 }
 
+/* Those that are not known yet are added, to be filled in. */
+static asj_status find_known(const asj_match_run *run, const asj_candidates *candidates, int32_t steps, grouping *g)
+{
+    const asj_status status = asj_alignments_reserve(run->context, g->known, candidates->count);
+    g->before = g->known->count;
+    for (size_t k = 0; k < candidates->count && status == ASJ_OK; k++) {
+        const asj_candidate *c = &candidates->list[k];
+        const asj_alignment_key key = key_of(run, c, template_side(c), steps);
+        g->number[k] = asj_alignments_number(g->known, &key, (uint32_t)k);
+    }
+    return status;
+}
+
+/* Is candidate k the one to fill in its alignment? */
+static int is_first(const grouping *g, uint32_t k)
+{
+    return g->number[k] >= g->before && g->known->list[g->number[k]].first == k;
+}
+
 typedef struct job {
     const asj_match_run *run;
-    asj_candidate *list;
     const grouping *g;
     const asj_aligner *aligner;
     asj_watch *watch;
 } job;
 
-static void align_some(const void *data, const asj_part *part)
+/* The candidates of location p. */
+static void align_group(const job *j, const asj_part *part, int64_t p)
 {
-    const job *j = data;
     const grouping *g = j->g;
-    const int64_t count1 = j->run->image[0]->l_junctions.location_count;
-    for (int64_t p = part->first; p < part->end; p++) {
-        asj_template t;
-        const int32_t side = p >= count1;
-        const asj_image_features *features = j->run->image[side];
-        const int64_t at = side ? p - count1 : p;
-        if (g->start[p] == g->start[p + 1] || asj_watch_stops(j->watch, part))
+    const int64_t count1 = j->run->image[0]->l_junctions.location_count, at = p >= count1 ? p - count1 : p;
+    const asj_image_features *features = j->run->image[p >= count1];
+    int32_t has_template = 0;
+    asj_template t;
+    for (uint32_t n = g->start[p]; n < g->start[p + 1] && !asj_watch_stops(j->watch, part); n++) {
+        if (!is_first(g, g->order[n]))
             continue;
-        asj_template_create(j->aligner->disc, &features->pyramid, features->l_junctions.location_x[at],
-                            features->l_junctions.location_y[at], &t);
-        for (uint32_t k = g->start[p]; k < g->start[p + 1] && !asj_watch_stops(j->watch, part); k++)
-            align_one(j->run, j->aligner, &t, side, &j->list[g->order[k]]);
+        if (!has_template)
+            asj_template_create(j->aligner->disc, &features->pyramid, features->l_junctions.location_x[at],
+                                features->l_junctions.location_y[at], &t);
+        has_template = 1;
+        align_key(j->run, j->aligner, &t, &g->known->list[g->number[g->order[n]]]);
     }
 }
 
-static asj_status align_groups(const asj_match_run *run, asj_candidate *list, const grouping *g, const asj_aligner *aligner)
+static void align_some(const void *data, const asj_part *part)
+{
+    for (int64_t p = part->first; p < part->end; p++)
+        align_group(data, part, p);
+}
+
+static asj_status align_groups(const asj_match_run *run, const grouping *g, const asj_aligner *aligner)
 {
     asj_watch watch;
     const int64_t locations = (int64_t)run->image[0]->l_junctions.location_count + run->image[1]->l_junctions.location_count;
-    const job j = {run, list, g, aligner, &watch};
+    const job j = {run, g, aligner, &watch};
     asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
     asj_parallel(run->context, run->context->threads, locations, 4, align_some, &j);
     return asj_watch_end(&watch);
@@ -246,23 +290,33 @@ asj_status asj_align_candidates(const asj_match_run *run, asj_candidates *candid
     asj_memory *memory = &run->context->memory;
     const size_t count = candidates->count;
     const size_t locations = (size_t)run->image[0]->l_junctions.location_count + run->image[1]->l_junctions.location_count;
-    const grouping g = {asj_allocate_zero(memory, locations + 2, sizeof *g.start), asj_allocate(memory, count, sizeof *g.order),
-                        asj_allocate(memory, count, sizeof *g.group)};
+    asj_alignments own = {NULL, NULL, 0, 0, 0};
+    grouping g = {asj_allocate_zero(memory, locations + 2, sizeof *g.start), asj_allocate(memory, count, sizeof *g.order),
+                  asj_allocate(memory, count, sizeof *g.group), run->alignments ? run->alignments : &own,
+                  asj_allocate(memory, count, sizeof *g.number), 0};
     asj_disc *disc = asj_allocate(memory, 1, sizeof *disc);
     asj_status status = ASJ_OK;
-    if (!g.start || !g.order || !g.group || !disc) {
+    if (!g.start || !g.order || !g.group || !g.number || !disc) {
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to align %zu candidates", count);
     } else {
         const asj_aligner aligner = {disc, asj_align_steps(run), run->options->max_move};
         asj_disc_create(run->options->align_radius, disc);
         group_by_template(run, candidates, &g);
-        status = align_groups(run, candidates->list, &g, &aligner);
+        status = find_known(run, candidates, aligner.iterations, &g);
+        if (status == ASJ_OK)
+            status = align_groups(run, &g, &aligner);
+        for (size_t k = 0; k < count && status == ASJ_OK; k++)
+            tell(&g.known->list[g.number[k]], &candidates->list[k]);
         if (status == ASJ_OK)
             drop_unlike(candidates);
+        else
+            asj_alignments_free(memory, g.known); /* which are not all filled in */
     }
     asj_release(memory, g.start);
     asj_release(memory, g.order);
     asj_release(memory, g.group);
+    asj_release(memory, g.number);
+    asj_alignments_free(memory, &own);
     asj_release(memory, disc);
     return status;
 }

@@ -3,14 +3,9 @@
 #ifndef ASJ_SRC_ALIGN_H
 #define ASJ_SRC_ALIGN_H
 
+#include "alignments.h"
 #include "disc.h"
 #include "match_run.h"
-
-/* A map of the template's disc into the source: source = (x, y) + linear (template - its centre). */
-typedef struct asj_disc_pose {
-    double x, y;
-    double linear[4];
-} asj_disc_pose;
 
 /* Result of an alignment. */
 typedef struct asj_alignment {

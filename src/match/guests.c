@@ -102,7 +102,8 @@ static asj_status add_guests(asj_match_run *run)
 {
     asj_memory *memory = &run->context->memory;
     uint8_t *taken[2] = {NULL, NULL};
-    asj_match_run guests = {.context = run->context, .options = run->options, .image = {run->image[0], run->image[1]}};
+    asj_match_run guests = {.context = run->context, .options = run->options, .image = {run->image[0], run->image[1]},
+                            .alignments = run->alignments};
     asj_status status = start(run, &guests, taken);
     if (status == ASJ_OK)
         status = choose(&guests);

@@ -240,13 +240,18 @@ static asj_status expect(asj_match_run *run, const asj_known_matches *known, con
 
 /* From the features of two images to the result. */
 static asj_status match_features(asj_context *context, const asj_match_options *options, const asj_image_features *features[2],
-                                 const asj_known_matches *known, stop_watch *watch, asj_match_result **result)
+                                 const asj_known_matches *known, asj_alignments *alignments, stop_watch *watch,
+                                 asj_match_result **result)
 {
     const asj_stretch by[2] = {stretch_of(features[0]), stretch_of(features[1])};
     const int32_t upsampled = by[0].x > 1 || by[1].x > 1, expected = upsampled && says_where(options, known);
     const asj_match_options of_upsampled = options_for(options, by, expected);
     asj_expected places = {{NULL, NULL}, {NULL, NULL}};
-    asj_match_run run = {.context = context, .options = upsampled ? &of_upsampled : options, .image = {features[0], features[1]}};
+    asj_alignments own = {NULL, NULL, 0, 0, 0}; /* upsampled the lists' steps are not as many (align.c) */
+    if (!alignments && !upsampled && options->geometry.model != ASJ_GEOMETRY_NONE)
+        alignments = &own;
+    asj_match_run run = {.context = context, .options = upsampled ? &of_upsampled : options, .image = {features[0], features[1]},
+                         .alignments = alignments};
     asj_status status = expected ? expect(&run, known, by, &places) : ASJ_OK;
     if (status == ASJ_OK)
         status = run_steps(&run, watch);
@@ -261,12 +266,18 @@ static asj_status match_features(asj_context *context, const asj_match_options *
     asj_release(&context->memory, run.choices.list);
     asj_release(&context->memory, run.rejected.list);
     asj_support_free(&context->memory, &run.support);
+    asj_alignments_free(&context->memory, &own);
     if (status == ASJ_OK && asj_progress(context, ASJ_STAGE_ASSIGN, 1) != ASJ_OK) {
         asj_match_result_free(result);
         status = ASJ_ERROR_CANCELLED;
     }
     return status;
 }
+
+typedef struct source_pair {
+    const asj_match_source *images;
+    asj_alignments *alignments; /* or NULL */
+} source_pair;
 
 /* Of one image; `upsampled`: of the image upsampled by two, if it has junctions of octave -1. */
 static asj_status make_features(asj_context *context, const asj_match_options *options, const asj_match_source *s, int32_t n,
@@ -283,25 +294,27 @@ static asj_status make_features(asj_context *context, const asj_match_options *o
 static asj_status match_sources(asj_context *context, const asj_match_options *options, const void *data, int32_t upsampled,
                                 const asj_known_matches *known, asj_match_result **result)
 {
-    const asj_match_source *sources = data;
+    const source_pair *sources = data;
     asj_image_features features[2];
     const asj_image_features *both[2] = {&features[0], &features[1]};
     stop_watch watch = {.clock = asj_clock_ms()};
     memset(features, 0, sizeof features);
     asj_status status = asj_progress(context, ASJ_STAGE_PATCHES, 0);
     for (int32_t n = 0; n < 2 && status == ASJ_OK; n++)
-        status = make_features(context, options, &sources[n], n, upsampled, &features[n]);
+        status = make_features(context, options, &sources->images[n], n, upsampled, &features[n]);
     stop(&watch, ASJ_STAGE_PATCHES);
     if (status == ASJ_OK)
-        status = match_features(context, options, both, known, &watch, result);
+        status = match_features(context, options, both, known, sources->alignments, &watch, result);
     for (int32_t n = 0; n < 2; n++)
         asj_image_features_free(&context->memory, &features[n]);
     return status;
 }
 
 asj_status asj_match_look(asj_context *context, const asj_match_source sources[2], const asj_match_options *options,
-                          int32_t upsampled, const asj_known_matches *known, asj_match_result **result)
+                          int32_t upsampled, const asj_known_matches *known, asj_alignments *alignments,
+                          asj_match_result **result)
 {
+    const source_pair pair = {sources, alignments};
     if (result)
         *result = NULL;
     if (asj_enter(context) != ASJ_OK)
@@ -313,7 +326,7 @@ asj_status asj_match_look(asj_context *context, const asj_match_source sources[2
         if (sources[n].count > ASJ_MOST_JUNCTIONS)
             return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions of image %d are too many", sources[n].count, (int)n + 1);
     const asj_upsampled_match match = {match_sources,
-                                   sources,
+                                   &pair,
                                    {sources[0].junctions, sources[1].junctions},
                                    {sources[0].count, sources[1].count},
                                    upsampled,
@@ -352,7 +365,7 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
     const double start = asj_clock_ms();
     asj_status status = asj_match_request_check(context, options);
     if (status == ASJ_OK)
-        status = asj_match_look(context, sources, options, 0, NULL, result);
+        status = asj_match_look(context, sources, options, 0, NULL, NULL, result);
     return status == ASJ_OK ? finish_call(context, start, result) : status;
 }
 
@@ -364,7 +377,7 @@ static asj_status match_kept(asj_context *context, const asj_match_options *opti
                                          asj_features_view(context, kept[1], upsampled)};
     const asj_image_features *both[2] = {&views[0], &views[1]};
     stop_watch watch = {.clock = asj_clock_ms()};
-    return match_features(context, options, both, known, &watch, result);
+    return match_features(context, options, both, known, NULL, &watch, result);
 }
 
 /* Features tell what they were made with; the pair's steps read the same options. */

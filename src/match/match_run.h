@@ -15,6 +15,7 @@ typedef struct asj_match_run {
     asj_candidates candidates; /* shortlist.c fills them, align.c their maps, consensus.c their scores */
     asj_support support;       /* support.c: who agrees with whom */
     asj_choices choices;       /* assign.c; room for every location of image 1 */
+    struct asj_alignments *alignments; /* of the same images, that are known; NULL: none are kept */
     int32_t for_geometry;      /* 1: the candidates of two_view.c's longer list, */
     uint32_t most_listed;      /* .. of so many L-junctions of each image, the most meaningful ones and their equals (canonical
                                 * patches); 0: of all */

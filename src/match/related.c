@@ -88,7 +88,8 @@ asj_status asj_related(const asj_match_run *run, int32_t *related)
     asj_memory *memory = &run->context->memory;
     asj_subset parts[2];
     asj_match_options options = *run->options;
-    asj_match_run some = {.context = run->context, .options = &options, .image = {&parts[0].features, &parts[1].features}};
+    asj_match_run some = {.context = run->context, .options = &options, .image = {&parts[0].features, &parts[1].features},
+                          .alignments = run->alignments};
     *related = 1;
     if (!asked(run))
         return ASJ_OK;

@@ -159,7 +159,7 @@ asj_status asj_apply_geometry(asj_match_run *run)
     asj_wide_run w = {.options = *run->options};
     w.options.shortlist = w.options.shortlist > WIDE_SHORTLIST ? w.options.shortlist : WIDE_SHORTLIST;
     w.run = (asj_match_run){.context = run->context, .options = &w.options, .image = {run->image[0], run->image[1]},
-                            .for_geometry = 1, .most_listed = MOST_LISTED};
+                            .alignments = run->alignments, .for_geometry = 1, .most_listed = MOST_LISTED};
     asj_status status = wide_candidates(run, &w);
     if (status == ASJ_OK)
         status = estimate(run, &w);

@@ -3,6 +3,7 @@
 #ifndef ASJ_SRC_UPSAMPLED_H
 #define ASJ_SRC_UPSAMPLED_H
 
+#include "alignments.h"
 #include "match_result.h"
 
 /* Whether some are of octave -1. */
@@ -44,9 +45,10 @@ typedef struct asj_match_source {
 } asj_match_source;
 
 /* asj_match() as one of several looks at two images, whose pose is not finished (final_pose.h), with options that are checked, and
- * with cameras of stretched images perhaps. `upsampled`: of the upsampled images alone; known may be NULL. Errors as of
- * asj_match(). */
+ * with cameras of stretched images perhaps. `upsampled`: of the upsampled images alone; known may be NULL. alignments: NULL, or
+ * those that are known of these images; more afterwards. Errors as of asj_match(). */
 asj_status asj_match_look(asj_context *context, const asj_match_source sources[2], const asj_match_options *options,
-                          int32_t upsampled, const asj_known_matches *known, asj_match_result **result);
+                          int32_t upsampled, const asj_known_matches *known, asj_alignments *alignments,
+                          asj_match_result **result);
 
 #endif

@@ -31,7 +31,7 @@ static asj_match_result *match_known(asj_context *context, int32_t upsampled, in
     for (int32_t n = 0; n < 2; n++)
         options.geometry.cameras[n] = camera_of(n);
     const asj_match_source sources[2] = {{&views[0].image, left, count}, {&views[1].image, b->junctions, b->junction_count}};
-    const asj_status status = upsampled ? asj_match_look(context, sources, &options, 1, known, &result)
+    const asj_status status = upsampled ? asj_match_look(context, sources, &options, 1, known, NULL, &result)
                                         : asj_match(context, &views[0].image, left, count, &views[1].image, b->junctions,
                                                     b->junction_count, &options, &result);
     assert_int_equal(status, ASJ_OK);
