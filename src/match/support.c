@@ -239,12 +239,19 @@ static void find_limits(const search *in, block *b)
     }
 }
 
-/* As many candidates, from `first` on, as there is room for the supporters of. Returns the end. */
+/* The order in which supporters are looked for: by location, so that one after the other has the same neighbours and finds them in
+ * the cache. */
+static const asj_candidate *in_order(const search *in, size_t k)
+{
+    return &in->run->candidates.list[in->all.index.order[k]];
+}
+
+/* As many candidates in this order, from `first` on, as there is room for the supporters of. Returns the end. */
 static size_t take_block(const search *in, size_t first, block *b)
 {
     size_t end = first;
     for (size_t used = 0; end < in->run->candidates.count; end++) {
-        const size_t room = b->limits[location_of(in->run, &in->run->candidates.list[end], in->side)];
+        const size_t room = b->limits[location_of(in->run, in_order(in, end), in->side)];
         if (used + room > b->capacity)
             break;
         b->starts[end] = used;
@@ -253,13 +260,13 @@ static size_t take_block(const search *in, size_t first, block *b)
     return end;
 }
 
-/* Appends the supporters of candidates first .. end - 1. ASJ_ERROR_LIMIT: there is no room, and nobody has a share yet. */
+/* Appends the supporters of candidates first .. end - 1 in this order. ASJ_ERROR_LIMIT: there is no room, and nobody has a share
+ * yet. */
 static asj_status keep(const search *in, size_t first, size_t end, block *b, asj_supporters *found)
 {
-    const asj_candidate *list = in->run->candidates.list;
     size_t total = b->used + 1; /* never NULL */
     for (size_t k = first; k < end; k++)
-        total += found->count[list[k].number - 1];
+        total += found->count[in_order(in, k)->number - 1];
     if (total > in->room && in->share == UINT32_MAX)
         return ASJ_ERROR_LIMIT;
     void *memory = found->list;
@@ -269,7 +276,7 @@ static asj_status keep(const search *in, size_t first, size_t end, block *b, asj
     if (status != ASJ_OK)
         return asj_fail(in->run->context, status, "no memory for %zu pairs of candidates", total);
     for (size_t k = first; k < end; k++) {
-        const uint32_t n = list[k].number - 1;
+        const uint32_t n = in_order(in, k)->number - 1;
         memcpy(found->list + b->used, b->list + b->starts[k], found->count[n] * sizeof *b->list);
         found->offset[n] = b->used;
         b->used += found->count[n];
@@ -288,10 +295,11 @@ typedef struct job {
 static void find_some(const void *data, const asj_part *part)
 {
     const job *j = data;
-    const asj_candidate *list = j->in->run->candidates.list + j->first;
-    const size_t *starts = j->b->starts + j->first;
-    for (int64_t k = part->first; k < part->end && !asj_watch_stops(j->watch, part); k++)
-        j->found->count[list[k].number - 1] = find_supporters(j->in, &list[k], j->b->list + starts[k]);
+    for (int64_t n = part->first; n < part->end && !asj_watch_stops(j->watch, part); n++) {
+        const size_t k = j->first + (size_t)n;
+        const asj_candidate *c = in_order(j->in, k);
+        j->found->count[c->number - 1] = find_supporters(j->in, c, j->b->list + j->b->starts[k]);
+    }
 }
 
 static asj_status find_all(const search *in, block *b, asj_supporters *found)
