@@ -88,17 +88,23 @@ static double over_shares(const double near[SHARES], int32_t count)
     return largest + log(sum / SHARES);
 }
 
-static double score_of(const scene *s, const double *axes, int32_t axis_count)
+/* known: of each edge, what other axes say of it; NULL: there are no others. */
+static double score_beside(const scene *s, const double *known, const double *axes, int32_t axis_count)
 {
     double near[SHARES] = {0};
     for (int32_t k = 0; k < s->count; k++) {
-        double sum = 0;
+        double sum = known ? known[k] : 0;
         for (int32_t a = 0; a < axis_count; a++)
             sum += ratio(s, k, axes + 3 * a);
         for (int32_t i = 0; i < SHARES && sum > 0; i++)
             near[i] += log(1 + shares[i] / (1 - shares[i]) * sum / 3);
     }
     return over_shares(near, s->count);
+}
+
+static double score_of(const scene *s, const double *axes, int32_t axis_count)
+{
+    return score_beside(s, NULL, axes, axis_count);
 }
 
 static int better(const void *left, const void *right)
@@ -161,10 +167,12 @@ static int32_t find_points(const scene *s, ranked *all, ranked points[MOST_POINT
 static void turn_about(const scene *s, const double first[3], ranked *turned)
 {
     const double e[3] = {fabs(first[0]) < 0.6, fabs(first[0]) >= 0.6, 0};
-    double a[3], b[3];
+    double a[3], b[3], known[MOST_EDGES];
     asj_cross3(first, e, a);
     asj_normalise3(a);
     asj_cross3(first, a, b);
+    for (int32_t k = 0; k < s->count; k++)
+        known[k] = ratio(s, k, first);
     for (int32_t n = 0; n < STEPS; n++) {
         const double angle = n * (ASJ_PI / 2 / STEPS), c = cos(angle), d = sin(angle);
         ranked *r = &turned[n];
@@ -173,7 +181,7 @@ static void turn_about(const scene *s, const double first[3], ranked *turned)
             r->axes[3 + k] = c * a[k] + d * b[k];
             r->axes[6 + k] = -d * a[k] + c * b[k];
         }
-        r->score = score_of(s, r->axes, 3);
+        r->score = score_beside(s, known, r->axes + 3, 2);
     }
 }
 

@@ -11,6 +11,7 @@
  * "Edges at half the size, rivals that both looks have"). */
 #include "room_directions.h"
 #include "core/angle.h"
+#include "core/threads.h"
 #include "geometry/vanishing.h"
 #include "segments/line_segments.h"
 
@@ -22,25 +23,34 @@
 #define BRANCHES_SD (2 * ASJ_DEGREE)
 #define SEGMENT_EPSILON 1.0
 
-typedef struct segments_of_level {
-    asj_line_segment *list;
-    size_t count;
-} segments_of_level;
-
 static int32_t longer_side(const asj_pyramid *p, int32_t level)
 {
     return p->width[level] > p->height[level] ? p->width[level] : p->height[level];
 }
 
-static asj_status find_segments(asj_context *context, const asj_pyramid *pyramid, int32_t level, segments_of_level *found)
+/* The segments of level `level` of each picture, counted from its first one, where it has that. */
+static asj_status find_segments(asj_context *context, const asj_pyramid *const pyramids[], const int32_t first[], int32_t count,
+                                int32_t level, asj_line_segments found[][LEVELS])
 {
-    const asj_frame frame = {.width = pyramid->width[level], .height = pyramid->height[level],
-                             .stride = pyramid->width[level] + 1, .gray = pyramid->plane[level]};
-    return asj_line_segments_find(context, &frame, ASJ_STAGE_ASSIGN, SEGMENT_EPSILON, &found->list, &found->count);
+    asj_frame frames[ASJ_SEGMENT_IMAGES];
+    asj_line_segments each[ASJ_SEGMENT_IMAGES];
+    int32_t of[ASJ_SEGMENT_IMAGES], some = 0;
+    for (int32_t v = 0; v < count; v++) {
+        const asj_pyramid *p = pyramids[v];
+        const int32_t n = first[v] + level;
+        if (n >= p->levels)
+            continue;
+        frames[some] = (asj_frame){.width = p->width[n], .height = p->height[n], .stride = p->width[n] + 1, .gray = p->plane[n]};
+        of[some++] = v;
+    }
+    const asj_status status = asj_line_segments_find_each(context, frames, some, ASJ_STAGE_ASSIGN, SEGMENT_EPSILON, each);
+    for (int32_t n = 0; n < some; n++)
+        found[of[n]][level] = each[n];
+    return status;
 }
 
 /* In pixels of the first level: the centre of pixel i of one with pixels `pixel` wide lies at (i + 1/2) pixel - 1/2. */
-static void add_edges(const segments_of_level *found, double pixel, asj_edge_list *edges)
+static void add_edges(const asj_line_segments *found, double pixel, asj_edge_list *edges)
 {
     for (size_t k = 0; k < found->count; k++) {
         const asj_line_segment *s = &found->list[k];
@@ -49,41 +59,79 @@ static void add_edges(const segments_of_level *found, double pixel, asj_edge_lis
     }
 }
 
-asj_status asj_room_edges(asj_context *context, const asj_pyramid *pyramid, asj_edge_list *edges)
+/* Takes the segments of all levels apart. */
+static asj_status collect(asj_context *context, const asj_pyramid *pyramid, int32_t first, asj_line_segments found[LEVELS],
+                          asj_edge_list *edges)
 {
-    segments_of_level found[LEVELS] = {{NULL, 0}};
-    asj_status status = ASJ_OK;
-    int32_t first = 0;
     size_t count = 0;
-    memset(edges, 0, sizeof *edges);
-    while (first + 1 < pyramid->levels && longer_side(pyramid, first) > LONGEST)
-        first++;
-    for (int32_t k = 0; k < LEVELS && first + k < pyramid->levels && status == ASJ_OK; k++) {
-        status = find_segments(context, pyramid, first + k, &found[k]);
+    for (int32_t k = 0; k < LEVELS; k++)
         count += found[k].count;
-    }
-    edges->scale = ldexp(1, first);
-    edges->longer = longer_side(pyramid, first);
-    if (status == ASJ_OK)
-        edges->list = asj_allocate(&context->memory, count, sizeof *edges->list);
-    if (status == ASJ_OK && !edges->list)
-        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu edges", count);
-    for (int32_t k = 0; k < LEVELS; k++) {
-        if (edges->list)
-            add_edges(&found[k], ldexp(1, k), edges);
-        asj_release(&context->memory, found[k].list);
+    *edges = (asj_edge_list){.list = asj_allocate(&context->memory, count, sizeof *edges->list), .scale = ldexp(1, first),
+                             .longer = longer_side(pyramid, first)};
+    for (int32_t k = 0; k < LEVELS && edges->list; k++)
+        add_edges(&found[k], ldexp(1, k), edges);
+    return edges->list ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu edges", count);
+}
+
+asj_status asj_room_edges(asj_context *context, const asj_pyramid *const pyramids[], int32_t count, asj_edge_list *edges)
+{
+    asj_memory *memory = &context->memory;
+    asj_line_segments found[ASJ_SEGMENT_IMAGES][LEVELS] = {{{NULL, 0}}};
+    int32_t first[ASJ_SEGMENT_IMAGES] = {0};
+    asj_status status = ASJ_OK;
+    memset(edges, 0, (size_t)count * sizeof *edges);
+    for (int32_t v = 0; v < count; v++)
+        while (first[v] + 1 < pyramids[v]->levels && longer_side(pyramids[v], first[v]) > LONGEST)
+            first[v]++;
+    for (int32_t k = 0; k < LEVELS && status == ASJ_OK; k++)
+        status = find_segments(context, pyramids, first, count, k, found);
+    for (int32_t v = 0; v < count && status == ASJ_OK; v++)
+        status = collect(context, pyramids[v], first[v], found[v], &edges[v]);
+    for (int32_t v = 0; v < count; v++) {
+        for (int32_t k = 0; k < LEVELS; k++)
+            asj_release(memory, found[v][k].list);
+        if (status != ASJ_OK)
+            asj_release(memory, edges[v].list);
+        if (status != ASJ_OK)
+            edges[v].list = NULL;
     }
     return status;
 }
 
-static asj_status from_segments(asj_context *context, const asj_pyramid *pyramid, const asj_camera *camera,
-                                asj_directions_list *found)
+typedef struct job {
+    asj_directions_scratch *scratch[2];
+    const asj_edge_list *edges;
+    const asj_camera *cameras;
+    asj_directions_list *found;
+} job;
+
+static void find_some(const void *data, const asj_part *part)
 {
-    asj_edge_list edges;
-    asj_status status = asj_room_edges(context, pyramid, &edges);
-    if (status == ASJ_OK && !asj_find_directions(&context->memory, &edges, camera, 1, found))
-        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %zu edges", edges.count);
-    asj_release(&context->memory, edges.list);
+    const job *j = data;
+    for (int64_t v = part->first; v < part->end; v++)
+        asj_find_directions_with(j->scratch[v], &j->edges[v], &j->cameras[v], 1, &j->found[v]);
+}
+
+/* Each image by a thread. */
+static asj_status from_segments(asj_context *context, const asj_image_features *const images[2], const asj_camera cameras[2],
+                                asj_directions_list found[2])
+{
+    asj_memory *memory = &context->memory;
+    const asj_pyramid *const pyramids[2] = {&images[0]->pyramid, &images[1]->pyramid};
+    asj_edge_list edges[2];
+    asj_status status = asj_room_edges(context, pyramids, 2, edges);
+    if (status != ASJ_OK)
+        return status;
+    const job j = {{asj_directions_scratch_create(memory, edges[0].count), asj_directions_scratch_create(memory, edges[1].count)},
+                   edges, cameras, found};
+    if (j.scratch[0] && j.scratch[1])
+        asj_parallel(context, context->threads, 2, 1, find_some, &j);
+    else
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %zu edges", edges[0].count + edges[1].count);
+    for (int32_t v = 0; v < 2; v++) {
+        asj_directions_scratch_free(memory, j.scratch[v]);
+        asj_release(memory, edges[v].list);
+    }
     return status;
 }
 
@@ -137,9 +185,13 @@ static asj_status from_branches(asj_context *context, const asj_image_features *
     return ASJ_OK;
 }
 
-asj_status asj_room_directions(asj_context *context, const asj_image_features *image, const asj_camera *camera,
-                               asj_directions_list *found)
+asj_status asj_room_directions(asj_context *context, const asj_image_features *const images[2], const asj_camera cameras[2],
+                               asj_directions_list found[2])
 {
-    const asj_status status = from_segments(context, &image->pyramid, camera, found);
-    return status == ASJ_OK && found->count == 0 ? from_branches(context, image, camera, found) : status;
+    memset(found, 0, 2 * sizeof *found);
+    asj_status status = from_segments(context, images, cameras, found);
+    for (int32_t v = 0; v < 2 && status == ASJ_OK; v++)
+        if (found[v].count == 0)
+            status = from_branches(context, images[v], &cameras[v], &found[v]);
+    return status;
 }

@@ -99,6 +99,7 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
 {
     asj_status status = ASJ_OK;
     const int32_t known = asj_cameras_are_known(options), finds_focal = asj_finds_focal(options);
+    const asj_pyramid *const pyramids[2] = {&run->image[0]->pyramid, &run->image[1]->pyramid};
     double given = 0;
     for (int32_t k = 0; k < 18 && known; k++)
         given += fabs(options->directions[k / 9][k % 9]);
@@ -106,10 +107,10 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
         options->widths[side] = run->image[side]->pyramid.width[0];
         options->heights[side] = run->image[side]->pyramid.height[0];
     }
-    for (int32_t side = 0; side < 2 && known && !finds_focal && given == 0 && status == ASJ_OK; side++)
-        status = asj_room_directions(run->context, run->image[side], &options->cameras[side], &hints->directions[side]);
-    for (int32_t side = 0; side < 2 && finds_focal && given == 0 && status == ASJ_OK; side++)
-        status = asj_room_edges(run->context, &run->image[side]->pyramid, &edges[side]);
+    if (known && !finds_focal && given == 0)
+        status = asj_room_directions(run->context, run->image, options->cameras, hints->directions);
+    if (finds_focal && given == 0)
+        status = asj_room_edges(run->context, pyramids, 2, edges);
     hints->edges = finds_focal && given == 0 ? edges : NULL;
     return status;
 }

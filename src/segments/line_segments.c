@@ -27,13 +27,11 @@
 static const float cosines[ASJ_SEGMENT_PRECISIONS] = {0.92387953f, 0.98078528f, 0.99518473f, 0.99879546f, 0.99969882f, 0.9999247f};
 
 typedef struct search {
-    asj_context *context;
     asj_levels levels;
     asj_support_region region;
     double log_tests, log_epsilon;
-    int32_t least; /* samples of a region that is tested */
-    void *list;    /* of asj_line_segment */
-    size_t count, capacity;
+    int32_t least;        /* samples of a region that is tested */
+    asj_line_segments found; /* room for as many as there are such regions at most */
 } search;
 
 /* ln of the fewest false alarms of a rectangle over the precisions. */
@@ -83,33 +81,82 @@ static asj_line_segment segment_of(const asj_rectangle *r, double log_nfa)
 }
 
 /* The region around a sample that belongs to none yet. One that is too small frees nothing: its samples would not do better. */
-static asj_status test_region(search *s, int32_t seed)
+static void test_region(search *s, int32_t seed)
 {
     asj_rectangle rectangle;
     asj_region_grow(&s->levels, seed, ASJ_REGION_COSINE, &s->region);
     if (s->region.count < s->least || !asj_region_approximate(&s->levels, &s->region, &rectangle) || s->region.count < s->least)
-        return ASJ_OK;
+        return;
     const double log_nfa = improve(s, &rectangle);
-    if (log_nfa > s->log_epsilon)
-        return ASJ_OK;
-    asj_status status = asj_grow(&s->context->memory, &s->list, &s->capacity, s->count + 1, sizeof(asj_line_segment), s->count);
-    if (status == ASJ_OK)
-        ((asj_line_segment *)s->list)[s->count++] = segment_of(&rectangle, log_nfa);
-    return status;
+    if (log_nfa <= s->log_epsilon)
+        s->found.list[s->found.count++] = segment_of(&rectangle, log_nfa);
 }
 
-static asj_status test_all(search *s, int32_t stage)
+typedef struct job {
+    search *searches;
+    asj_watch *watch;
+} job;
+
+static void test_some(const void *data, const asj_part *part)
 {
-    asj_status status = ASJ_OK;
-    asj_watch watch;
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++) {
+        search *s = &j->searches[n];
+        for (int32_t i = 0; i < s->levels.order_count; i++) {
+            if (s->region.used[s->levels.order[i]])
+                continue;
+            if (asj_watch_stops(j->watch, part))
+                return;
+            test_region(s, s->levels.order[i]);
+        }
+    }
+}
+
+static asj_status prepare(asj_context *context, const asj_frame *frame, int32_t stage, double epsilon, search *s)
+{
+    asj_memory *memory = &context->memory;
+    const asj_status status = asj_levels_create(context, frame, stage, &s->levels);
+    if (status != ASJ_OK || s->levels.order_count == 0)
+        return status;
+    const size_t samples = (size_t)s->levels.width * (size_t)s->levels.height;
+    s->log_epsilon = log(epsilon);
     s->log_tests = asj_segment_log_tests(s->levels.width, s->levels.height);
     s->least = (int32_t)ceil(fmax((s->log_tests - s->log_epsilon) / -log(PRECISION), 2));
-    memset(s->region.used, 0, (size_t)s->levels.width * (size_t)s->levels.height);
-    asj_watch_start(&watch, s->context, stage);
-    for (int32_t i = 0; i < s->levels.order_count && status == ASJ_OK; i++) {
-        if (s->region.used[s->levels.order[i]])
-            continue;
-        status = asj_watch_stops(&watch, NULL) ? asj_watch_end(&watch) : test_region(s, s->levels.order[i]);
+    s->region.samples = asj_allocate(memory, samples, sizeof *s->region.samples);
+    s->region.used = asj_allocate_zero(memory, samples, sizeof *s->region.used);
+    s->found.list = asj_allocate(memory, (size_t)(s->levels.order_count / s->least), sizeof *s->found.list);
+    if (s->region.samples && s->region.used && s->found.list)
+        return ASJ_OK;
+    return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the line segments of %d x %d pixels", (int)frame->width,
+                    (int)frame->height);
+}
+
+asj_status asj_line_segments_find_each(asj_context *context, const asj_frame *frames, int32_t count, int32_t stage, double epsilon,
+                                       asj_line_segments *found)
+{
+    asj_memory *memory = &context->memory;
+    search searches[ASJ_SEGMENT_IMAGES];
+    asj_status status = ASJ_OK;
+    memset(searches, 0, sizeof searches);
+    for (int32_t n = 0; n < count && status == ASJ_OK; n++)
+        status = prepare(context, &frames[n], stage, epsilon, &searches[n]);
+    if (status == ASJ_OK) {
+        asj_watch watch;
+        const job j = {searches, &watch};
+        asj_watch_start(&watch, context, stage);
+        asj_parallel(context, context->threads, count, 1, test_some, &j);
+        status = asj_watch_end(&watch);
+    }
+    for (int32_t n = 0; n < count; n++) {
+        search *s = &searches[n];
+        if (status != ASJ_OK || s->found.count == 0) {
+            asj_release(memory, s->found.list);
+            s->found = (asj_line_segments){NULL, 0};
+        }
+        found[n] = s->found;
+        asj_release(memory, s->region.samples);
+        asj_release(memory, s->region.used);
+        asj_levels_free(memory, &s->levels);
     }
     return status;
 }
@@ -117,32 +164,9 @@ static asj_status test_all(search *s, int32_t stage)
 asj_status asj_line_segments_find(asj_context *context, const asj_frame *frame, int32_t stage, double epsilon,
                                   asj_line_segment **segments, size_t *count)
 {
-    asj_memory *memory = &context->memory;
-    search s;
-    memset(&s, 0, sizeof s);
-    *segments = NULL;
-    *count = 0;
-    asj_status status = asj_levels_create(context, frame, stage, &s.levels);
-    if (status != ASJ_OK || s.levels.order_count == 0) {
-        asj_levels_free(memory, &s.levels);
-        return status;
-    }
-    const size_t samples = (size_t)s.levels.width * (size_t)s.levels.height;
-    s.context = context;
-    s.log_epsilon = log(epsilon);
-    s.region.samples = asj_allocate(memory, samples, sizeof *s.region.samples);
-    s.region.used = asj_allocate(memory, samples, sizeof *s.region.used);
-    status = s.region.samples && s.region.used ? test_all(&s, stage) : ASJ_ERROR_MEMORY;
-    if (status == ASJ_OK) {
-        *segments = s.list;
-        *count = s.count;
-    } else {
-        asj_release(memory, s.list);
-        if (status == ASJ_ERROR_MEMORY)
-            asj_fail(context, status, "no memory for the line segments of %d x %d pixels", (int)frame->width, (int)frame->height);
-    }
-    asj_release(memory, s.region.samples);
-    asj_release(memory, s.region.used);
-    asj_levels_free(memory, &s.levels);
+    asj_line_segments found;
+    const asj_status status = asj_line_segments_find_each(context, frame, 1, stage, epsilon, &found);
+    *segments = found.list;
+    *count = found.count;
     return status;
 }

@@ -142,10 +142,9 @@ static asj_status make_candidates(stage *s)
     for (int v = 0; v < 2; v++) {
         s->place[v] = get(s->run.image[v]->l_junctions.location_count, sizeof *s->place[v]);
         cluster(&s->run.image[v]->l_junctions, s->place[v]);
-        if (status == ASJ_OK)
-            status = asj_room_directions(s->run.context, s->run.image[v], &s->options.geometry.cameras[v],
-                                         &s->hints.directions[v]);
     }
+    if (status == ASJ_OK)
+        status = asj_room_directions(s->run.context, s->run.image, s->options.geometry.cameras, s->hints.directions);
     if (status == ASJ_OK)
         status = asj_show_pictures(&s->run, &s->shown, s->hints.pictures);
     size_t kept = 0;

@@ -111,10 +111,7 @@ static asj_status make_priors(steps *s)
 static asj_status find_directions(steps *s)
 {
     const asj_camera *cameras = s->run.options->geometry.cameras;
-    asj_status status = ASJ_OK;
-    for (int32_t v = 0; v < 2 && status == ASJ_OK; v++)
-        status = asj_room_directions(s->run.context, s->run.image[v], &cameras[v], &s->hints.directions[v]);
-    return status;
+    return asj_room_directions(s->run.context, s->run.image, cameras, s->hints.directions);
 }
 
 static asj_status estimate(steps *s)

@@ -63,7 +63,8 @@ static void faint_edges_are_seen_at_half_size(void **state)
         paint(cases[k].contrast, cases[k].soft, cases[k].noise, pixels);
         asj_pyramid pyramid = pyramid_of(context, pixels);
         asj_edge_list edges;
-        assert_int_equal(asj_room_edges(context, &pyramid, &edges), ASJ_OK);
+        const asj_pyramid *const pyramids[] = {&pyramid};
+        assert_int_equal(asj_room_edges(context, pyramids, 1, &edges), ASJ_OK);
         assert_true(edges.scale == 1 && edges.longer == WIDTH);
         const asj_straight_edge fine = longest(&edges, 1), coarse = longest(&edges, 2);
         const double across = fabs(fine.x2 - fine.x1), coarse_across = fabs(coarse.x2 - coarse.x1);
@@ -88,7 +89,8 @@ static void every_allocation_may_fail(void **state)
         asj_pyramid pyramid = pyramid_of(context, pixels);
         asj_edge_list edges;
         counter.fail_at = counter.calls + n;
-        const asj_status status = asj_room_edges(context, &pyramid, &edges);
+        const asj_pyramid *const pyramids[] = {&pyramid};
+        const asj_status status = asj_room_edges(context, pyramids, 1, &edges);
         reached = unit_reached(&counter);
         assert_int_equal(status, reached ? ASJ_ERROR_MEMORY : ASJ_OK);
         assert_true(status == ASJ_OK || !edges.list);
