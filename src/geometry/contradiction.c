@@ -106,7 +106,7 @@ static void see(asj_estimation *e, int32_t look, asj_compared *as)
 {
     if (!e->pictures || as->is_seen)
         return;
-    asj_pictures_look(e->pictures, &e->set, &as->model->view, as->probability, &e->pictures->looks[look]);
+    asj_pictures_look(e->context, e->pictures, &e->set, &as->model->view, as->probability, &e->pictures->looks[look]);
     as->agreement = asj_pictures_agreement(&e->pictures->looks[look]);
     as->is_seen = 1;
 }

@@ -15,6 +15,7 @@
  * from it: picture_vote.c, of two geometries; picture_agreement.c, of one. */
 #include "picture_look.h"
 #include "likelihood.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -251,29 +252,41 @@ static void fit(asj_picture_look *look, int32_t channel)
         look->cells[n].difference += fabs(brightness[n][1] - a - b * brightness[n][0]) / look->channel_count;
 }
 
-/* One cell. 1: it is seen. */
-static int32_t look_at_cell(const asj_pictures *pictures, const asj_two_view *view, int32_t planes, int32_t n,
-                            asj_picture_look *look)
+/* One cell. */
+static void look_at_cell(const asj_pictures *pictures, const asj_two_view *view, int32_t planes, int32_t n, asj_picture_look *look)
 {
     const double cell = look->cell;
     const double x = (n % ASJ_CELLS_ALONG + 0.5) * cell - 0.5, y = (n / ASJ_CELLS_ALONG + 0.5) * cell - 0.5;
     asj_seen_cell *c = &look->cells[n];
     double brightness[2][ASJ_MOST_CHANNELS];
     if (!(planes > 0 && x < pictures->of[0].width && y < pictures->of[0].height))
-        return 0;
+        return;
     const int32_t plane = plane_at(pictures, planes, x, y, cell, &c->is_near);
     if (plane < 0 ||
         !compare_cell(pictures, view->planar ? view->matrix : view->planes[plane], x, y, cell, c, brightness))
-        return 0;
+        return;
     c->plane = plane;
     for (int32_t channel = 0; channel < look->channel_count; channel++)
         for (int32_t side = 0; side < 2; side++)
             look->brightness[channel][n][side] = brightness[side][channel];
-    return 1;
 }
 
-void asj_pictures_look(asj_pictures *pictures, const asj_pairs *set, const asj_two_view *view, const double *probability,
-                       asj_picture_look *look)
+typedef struct job {
+    const asj_pictures *pictures;
+    const asj_two_view *view;
+    int32_t planes;
+    asj_picture_look *look;
+} job;
+
+static void look_at_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++)
+        look_at_cell(j->pictures, j->view, j->planes, (int32_t)n, j->look);
+}
+
+void asj_pictures_look(const asj_context *context, asj_pictures *pictures, const asj_pairs *set, const asj_two_view *view,
+                       const double *probability, asj_picture_look *look)
 {
     const int32_t width = pictures->of[0].width, height = pictures->of[0].height;
     const int32_t planes = find_planes(pictures, set, view, probability);
@@ -281,8 +294,10 @@ void asj_pictures_look(asj_pictures *pictures, const asj_pairs *set, const asj_t
     forget(look);
     look->cell = (double)(width > height ? width : height) / ASJ_CELLS_ALONG;
     look->channel_count = pictures->of[0].channel_count;
+    const job j = {pictures, view, planes, look};
+    asj_parallel(context, context->threads, ASJ_CELLS, ASJ_CELLS_ALONG, look_at_some, &j);
     for (int32_t n = 0; n < ASJ_CELLS; n++)
-        count += look_at_cell(pictures, view, planes, n, look);
+        count += look->cells[n].plane >= 0;
     for (int32_t n = 0; n < ASJ_CELLS && count < LEAST_CELLS; n++)
         look->cells[n].plane = -1;
     for (int32_t channel = 0; channel < look->channel_count; channel++)

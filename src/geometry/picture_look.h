@@ -5,6 +5,7 @@
 
 #include "model.h"
 #include "picture.h"
+#include "core/context.h"
 
 #define ASJ_CELLS_ALONG 48 /* the longer side of image 1 */
 #define ASJ_CELLS (ASJ_CELLS_ALONG * ASJ_CELLS_ALONG)
@@ -47,7 +48,7 @@ asj_pictures *asj_pictures_create(asj_memory *memory, const asj_picture of[2], i
 void asj_pictures_free(asj_memory *memory, asj_pictures *pictures);
 
 /* The look of a geometry, given the probability of each candidate under it. */
-void asj_pictures_look(asj_pictures *pictures, const asj_pairs *set, const asj_two_view *view, const double *probability,
-                       asj_picture_look *look);
+void asj_pictures_look(const asj_context *context, asj_pictures *pictures, const asj_pairs *set, const asj_two_view *view,
+                       const double *probability, asj_picture_look *look);
 
 #endif
