@@ -43,9 +43,15 @@ static float *best_distances(const asj_match_run *run, int32_t side)
     return best;
 }
 
-/* What a call works on: numbers of each candidate, and of each location. */
+/* One of the two models: logits and odds of each candidate, sums of each location. */
+typedef struct prior_model {
+    double *z, *odds, *sums[2];
+} prior_model;
+
+/* What a call works on. */
 typedef struct priors {
-    double *z1, *z2, *other, *odds, *sums[2];
+    prior_model models[2];
+    double *other;      /* what the second model makes of each candidate */
     uint32_t *place[2]; /* locations of the candidates, side by side */
     float *best[2];
     asj_watch watch;
@@ -68,13 +74,13 @@ static void add_up(const uint32_t *place, const double *probability, size_t coun
 }
 
 /* The probabilities of the candidates, limited by location; their sum. */
-static double limit(const asj_match_run *run, const priors *p, double *probability)
+static double limit(const asj_match_run *run, const priors *p, const prior_model *m, double *probability)
 {
     const size_t count = run->candidates.count;
     double total = 0;
     for (int32_t side = 0; side < 2; side++) {
         const uint32_t *place = p->place[side];
-        double *sums = p->sums[side];
+        double *sums = m->sums[side];
         memset(sums, 0, run->image[side]->l_junctions.location_count * sizeof *sums);
         add_up(place, probability, count, sums);
         for (size_t k = 0; k < count; k++)
@@ -87,39 +93,39 @@ static double limit(const asj_match_run *run, const priors *p, double *probabili
 }
 
 /* Of the logits z + shift. */
-static double shifted(const asj_match_run *run, const priors *p, const double *z, double shift, double *probability)
+static double shifted(const asj_match_run *run, const priors *p, const prior_model *m, double shift, double *probability)
 {
     for (size_t k = 0; k < run->candidates.count; k++)
-        probability[k] = 1 / (1 + exp(-(z[k] + shift)));
-    return limit(run, p, probability);
+        probability[k] = 1 / (1 + exp(-(m->z[k] + shift)));
+    return limit(run, p, m, probability);
 }
 
 /* The same but for rounding, from the odds exp(-z): one exponential instead of one for each candidate. */
-static double nearly_shifted(const asj_match_run *run, const priors *p, double shift, double *probability)
+static double nearly_shifted(const asj_match_run *run, const priors *p, const prior_model *m, double shift, double *probability)
 {
     const double factor = exp(-shift);
     for (size_t k = 0; k < run->candidates.count; k++)
-        probability[k] = 1 / (1 + p->odds[k] * factor);
-    return limit(run, p, probability);
+        probability[k] = 1 / (1 + m->odds[k] * factor);
+    return limit(run, p, m, probability);
 }
 
 /* Where rounding could decide on which side of EXPECTED a sum is, it is computed as the last one will be. */
-static void bring_to_sum(const asj_match_run *run, priors *p, const double *z, double *probability)
+static void bring_to_sum(const asj_match_run *run, priors *p, const prior_model *m, const asj_part *part, double *probability)
 {
     double low = -15, high = 15;
     for (size_t k = 0; k < run->candidates.count; k++)
-        p->odds[k] = exp(-z[k]);
-    for (int32_t step = 0; step < STEPS && !asj_watch_stops(&p->watch, NULL); step++) {
+        m->odds[k] = exp(-m->z[k]);
+    for (int32_t step = 0; step < STEPS && !asj_watch_stops(&p->watch, part); step++) {
         const double middle = 0.5 * (low + high);
-        double sum = nearly_shifted(run, p, middle, probability);
+        double sum = nearly_shifted(run, p, m, middle, probability);
         if (!(fabs(sum - EXPECTED) > DOUBT * EXPECTED))
-            sum = shifted(run, p, z, middle, probability);
+            sum = shifted(run, p, m, middle, probability);
         if (sum < EXPECTED)
             low = middle;
         else
             high = middle;
     }
-    shifted(run, p, z, low, probability);
+    shifted(run, p, m, low, probability);
 }
 
 static void logits(const asj_match_run *run, const float *best1, const float *best2, double *z1, double *z2)
@@ -135,10 +141,24 @@ static void logits(const asj_match_run *run, const float *best1, const float *be
     }
 }
 
+typedef struct job {
+    const asj_match_run *run;
+    priors *p;
+    double *prior;
+} job;
+
+static void bring_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++)
+        bring_to_sum(j->run, j->p, &j->p->models[n], part, n == 0 ? j->prior : j->p->other);
+}
+
+/* Each model by a thread. */
 static void mean_of_models(const asj_match_run *run, priors *p, double *prior)
 {
-    bring_to_sum(run, p, p->z1, prior);
-    bring_to_sum(run, p, p->z2, p->other);
+    const job j = {run, p, prior};
+    asj_parallel(run->context, run->context->threads, 2, 1, bring_some, &j);
     for (size_t k = 0; k < run->candidates.count; k++)
         prior[k] = 0.5 * (prior[k] + p->other[k]);
 }
@@ -148,48 +168,64 @@ static asj_status set_priors(const asj_match_run *run, priors *p, double *prior,
     for (int32_t side = 0; side < 2; side++)
         for (size_t k = 0; k < run->candidates.count; k++)
             p->place[side][k] = run->image[side]->l_junctions.location[asj_candidate_l(&run->candidates.list[k], side)];
-    logits(run, p->best[0], p->best[1], p->z1, p->z2);
+    logits(run, p->best[0], p->best[1], p->models[0].z, p->models[1].z);
     asj_watch_start(&p->watch, run->context, ASJ_STAGE_ASSIGN);
     mean_of_models(run, p, prior);
     if (!run->image[0]->colours || !run->image[1]->colours || p->watch.stopped)
         return asj_watch_end(&p->watch);
     const asj_status status = asj_colour_agreement(run, prior, colours);
     for (size_t k = 0; k < run->candidates.count; k++) {
-        p->z1[k] += COLOUR_1 * colours[k];
-        p->z2[k] += COLOUR_2 * colours[k];
+        p->models[0].z[k] += COLOUR_1 * colours[k];
+        p->models[1].z[k] += COLOUR_2 * colours[k];
     }
     mean_of_models(run, p, prior);
     return status == ASJ_OK ? asj_watch_end(&p->watch) : status;
 }
 
-asj_status asj_candidate_priors(const asj_match_run *run, double *prior, double *colours)
+static int32_t create(const asj_match_run *run, priors *p)
 {
     asj_memory *memory = &run->context->memory;
     const size_t count = run->candidates.count;
-    priors p = {.best = {best_distances(run, 0), best_distances(run, 1)}};
-    p.z1 = asj_allocate(memory, count, sizeof *p.z1);
-    p.z2 = asj_allocate(memory, count, sizeof *p.z2);
-    p.other = asj_allocate(memory, count, sizeof *p.other);
-    p.odds = asj_allocate(memory, count, sizeof *p.odds);
-    for (int32_t side = 0; side < 2; side++) {
-        p.sums[side] = asj_allocate(memory, run->image[side]->l_junctions.location_count, sizeof *p.sums[side]);
-        p.place[side] = asj_allocate(memory, count, sizeof *p.place[side]);
+    p->other = asj_allocate(memory, count, sizeof *p->other);
+    int32_t good = p->other != NULL;
+    for (int32_t n = 0; n < 2; n++) {
+        prior_model *m = &p->models[n];
+        m->z = asj_allocate(memory, count, sizeof *m->z);
+        m->odds = asj_allocate(memory, count, sizeof *m->odds);
+        for (int32_t side = 0; side < 2; side++)
+            m->sums[side] = asj_allocate(memory, run->image[side]->l_junctions.location_count, sizeof *m->sums[side]);
+        p->best[n] = best_distances(run, n);
+        p->place[n] = asj_allocate(memory, count, sizeof *p->place[n]);
+        good = good && m->z && m->odds && m->sums[0] && m->sums[1] && p->best[n] && p->place[n];
     }
+    return good;
+}
+
+static void release(asj_memory *memory, const priors *p)
+{
+    for (int32_t n = 0; n < 2; n++) {
+        const prior_model *m = &p->models[n];
+        asj_release(memory, m->z);
+        asj_release(memory, m->odds);
+        asj_release(memory, m->sums[0]);
+        asj_release(memory, m->sums[1]);
+        asj_release(memory, p->best[n]);
+        asj_release(memory, p->place[n]);
+    }
+    asj_release(memory, p->other);
+}
+
+asj_status asj_candidate_priors(const asj_match_run *run, double *prior, double *colours)
+{
+    const size_t count = run->candidates.count;
+    priors p;
     asj_status status = ASJ_OK;
+    memset(&p, 0, sizeof p);
     memset(colours, 0, count * sizeof *colours);
-    if (!p.best[0] || !p.best[1] || !p.z1 || !p.z2 || !p.other || !p.odds || !p.sums[0] || !p.sums[1] ||
-        !p.place[0] || !p.place[1])
+    if (!create(run, &p))
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the priors of %zu candidates", count);
     else if (count > 0)
         status = set_priors(run, &p, prior, colours);
-    for (int32_t side = 0; side < 2; side++) {
-        asj_release(memory, p.best[side]);
-        asj_release(memory, p.sums[side]);
-        asj_release(memory, p.place[side]);
-    }
-    asj_release(memory, p.z1);
-    asj_release(memory, p.z2);
-    asj_release(memory, p.other);
-    asj_release(memory, p.odds);
+    release(&run->context->memory, &p);
     return status;
 }
