@@ -25,10 +25,12 @@ static void fill_reference(asj_tables *t)
     t->rank = asj_rank_reference;
     t->disc = asj_disc_reference;
     t->gate = asj_gate_reference;
+    t->near = asj_near_reference;
     t->ops = (asj_ops){
         .image = &t->image, .pyramid = &t->pyramid, .gradient = &t->gradient, .field = &t->field, .isotropic = &t->isotropic,
         .line = &t->line, .arc = &t->arc, .scan = &t->scan, .strip = &t->strip, .wedge = &t->wedge, .edge = &t->edge,
-        .patch = &t->patch, .describe = &t->describe, .bound = &t->bound, .rank = &t->rank, .disc = &t->disc, .gate = &t->gate};
+        .patch = &t->patch, .describe = &t->describe, .bound = &t->bound, .rank = &t->rank, .disc = &t->disc, .gate = &t->gate,
+        .near = &t->near};
 }
 
 int asj_tables_has(int32_t simd)

@@ -13,6 +13,7 @@
 #include "detect/blurred_wedge.h"
 #include "detect/edge_rows.h"
 #include "detect/strip.h"
+#include "geometry/near.h"
 #include "match/disc.h"
 #include "match/describe.h"
 #include "match/product_bound.h"
@@ -38,6 +39,7 @@ typedef struct asj_tables {
     asj_rank_ops rank;
     asj_disc_ops disc;
     asj_gate_ops gate;
+    asj_near_ops near;
 } asj_tables;
 
 /* Whether this build has a form (ASJ_SIMD_..., not auto). */

@@ -25,6 +25,7 @@ typedef struct asj_ops {
     struct asj_rank_ops *rank;           /* match/shortlist.h */
     struct asj_disc_ops *disc;           /* match/disc.h */
     struct asj_gate_ops *gate;           /* match/support_gate.h */
+    struct asj_near_ops *near;           /* geometry/near.h */
 } asj_ops;
 
 #endif

@@ -9,7 +9,7 @@
  *
  *     e^2 <= (1 + t)^2 d^2 n^2 + (1 + 1/t) (b^2 + (1 + t) d^2 4 c^2),    t = SLACK:
  *
- * rounding lets too many through, never too few. */
+ * rounding lets too many through, never too few. That is an operation (core/ops.h); here is its reference. */
 #include "near.h"
 
 #include <math.h>
@@ -20,10 +20,11 @@
 #define BLOCK 128   /* candidates, */
 #define AT_ONCE 8   /* of which so many are passed over at once: divides BLOCK */
 
-int32_t asj_near_prepare(asj_memory *memory, asj_pairs *set)
+int32_t asj_near_prepare(asj_memory *memory, const asj_near_ops *ops, asj_pairs *set)
 {
     const size_t count = (size_t)set->count;
-    set->at = asj_allocate_zero(memory, 4 * count + 1, sizeof *set->at);
+    set->near = ops;
+    set->at = asj_allocate_zero(memory, 4 * count + ASJ_NEAR_PADDING, sizeof *set->at);
     for (size_t k = 0; set->at && k < count; k++) {
         const asj_pair *c = &set->list[k];
         const double from_middle[4] = {c->x1 - set->middle[0][0], c->y1 - set->middle[0][1], c->x2 - set->middle[1][0],
@@ -35,12 +36,6 @@ int32_t asj_near_prepare(asj_memory *memory, asj_pairs *set)
     }
     return set->at != NULL;
 }
-
-/* A geometry as the loops below want it: e^2 <= factor n^2 + extra. */
-typedef struct plan {
-    float m[9]; /* the matrix for coordinates from the middles */
-    float factor, extra;
-} plan;
 
 /* The matrix for coordinates from the middles. */
 static void move_matrix(const asj_pairs *set, const asj_two_view *view, double m[9])
@@ -85,10 +80,10 @@ static largest largest_of(const asj_pairs *set, const asj_two_view *view, const 
     return (largest){row[0] * far[2] + row[1] * far[3] + row[2], fmax(fmax(row[0], row[1]), fmax(columns[0], columns[1]))};
 }
 
-static plan plan_of(const asj_pairs *set, const asj_two_view *view, double limit)
+static asj_near_plan plan_of(const asj_pairs *set, const asj_two_view *view, double limit)
 {
     double m[9];
-    plan p;
+    asj_near_plan p;
     move_matrix(set, view, m);
     const largest l = largest_of(set, view, m);
     const double b = ROUNDING * l.compared, c = ROUNDING * l.normal;
@@ -99,7 +94,7 @@ static plan plan_of(const asj_pairs *set, const asj_two_view *view, double limit
     return p;
 }
 
-static void near_lines(const plan *p, const float *x1, const float *y1, const float *x2, const float *y2, int32_t count,
+static void near_lines(const asj_near_plan *p, const float *x1, const float *y1, const float *x2, const float *y2, int32_t count,
                        int32_t *near)
 {
     const float m0 = p->m[0], m1 = p->m[1], m2 = p->m[2], m3 = p->m[3], m4 = p->m[4], m5 = p->m[5], m6 = p->m[6], m7 = p->m[7];
@@ -111,7 +106,7 @@ static void near_lines(const plan *p, const float *x1, const float *y1, const fl
     }
 }
 
-static void near_places(const plan *p, const float *x1, const float *y1, const float *x2, const float *y2, int32_t count,
+static void near_places(const asj_near_plan *p, const float *x1, const float *y1, const float *x2, const float *y2, int32_t count,
                         int32_t *near)
 {
     const float m0 = p->m[0], m1 = p->m[1], m2 = p->m[2], m3 = p->m[3], m4 = p->m[4], m5 = p->m[5], m6 = p->m[6], m7 = p->m[7];
@@ -122,6 +117,41 @@ static void near_places(const plan *p, const float *x1, const float *y1, const f
         near[k] = dx * dx + dy * dy <= factor * (w * w) + extra;
     }
 }
+
+typedef void (*loop)(const asj_near_plan *p, const float *x1, const float *y1, const float *x2, const float *y2, int32_t count,
+                     int32_t *near);
+
+static int32_t list(loop of_some, const asj_near_plan *p, const float *const at[4], int32_t count, uint32_t *near)
+{
+    int32_t found = 0, is_near[BLOCK];
+    for (int32_t first = 0; first < count; first += BLOCK) {
+        const int32_t some = count - first < BLOCK ? count - first : BLOCK;
+        of_some(p, at[0] + first, at[1] + first, at[2] + first, at[3] + first, some, is_near);
+        for (int32_t k = some; k % AT_ONCE != 0; k++)
+            is_near[k] = 0;
+        for (int32_t group = 0; group < some; group += AT_ONCE) {
+            int32_t any = 0; /* mostly none */
+            for (int32_t k = group; k < group + AT_ONCE; k++)
+                any |= is_near[k];
+            for (int32_t k = group; any && k < group + AT_ONCE; k++)
+                if (is_near[k])
+                    near[found++] = (uint32_t)(first + k);
+        }
+    }
+    return found;
+}
+
+static int32_t list_near_lines(const asj_near_plan *plan, const float *const at[4], int32_t count, uint32_t *near)
+{
+    return list(near_lines, plan, at, count, near);
+}
+
+static int32_t list_near_places(const asj_near_plan *plan, const float *const at[4], int32_t count, uint32_t *near)
+{
+    return list(near_places, plan, at, count, near);
+}
+
+const asj_near_ops asj_near_reference = {.lines = list_near_lines, .places = list_near_places};
 
 /* Exactly. Likelihoods ask the same of what has no planes (likelihood.c), but what lies on a plane must also be near its line. */
 static inline int32_t is_far(const asj_two_view *view, const asj_pair *c, double limit)
@@ -136,25 +166,16 @@ static inline int32_t is_far(const asj_two_view *view, const asj_pair *c, double
 
 int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, double limit, uint32_t *near)
 {
-    const plan p = plan_of(set, view, limit);
+    const asj_near_plan p = plan_of(set, view, limit);
     const float *at[4];
-    const int32_t exactly = !view->planar && view->plane_count > 0;
-    int32_t found = 0, is_near[BLOCK];
     for (ptrdiff_t n = 0; n < 4; n++)
         at[n] = set->at + n * set->count;
-    for (int32_t first = 0; first < count; first += BLOCK) {
-        const int32_t some = count - first < BLOCK ? count - first : BLOCK;
-        (view->planar ? near_places : near_lines)(&p, at[0] + first, at[1] + first, at[2] + first, at[3] + first, some, is_near);
-        for (int32_t k = some; k % AT_ONCE != 0; k++)
-            is_near[k] = 0;
-        for (int32_t group = 0; group < some; group += AT_ONCE) {
-            int32_t any = 0; /* mostly none */
-            for (int32_t k = group; k < group + AT_ONCE; k++)
-                any |= is_near[k];
-            for (int32_t k = group; any && k < group + AT_ONCE; k++)
-                if (is_near[k] && !(exactly && is_far(view, &set->list[first + k], limit)))
-                    near[found++] = (uint32_t)(first + k);
-        }
-    }
-    return found;
+    const int32_t found = (view->planar ? set->near->places : set->near->lines)(&p, at, count, near);
+    if (view->planar || view->plane_count == 0)
+        return found;
+    int32_t kept = 0;
+    for (int32_t n = 0; n < found; n++)
+        if (!is_far(view, &set->list[near[n]], limit))
+            near[kept++] = near[n];
+    return kept;
 }

@@ -38,6 +38,7 @@ static const struct {
     SLOT(rank, partners),
     SLOT(disc, compare),
     SLOT(gate, pass),
+    SLOT(near, lines), SLOT(near, places),
 };
 #define SLOTS (sizeof slots / sizeof slots[0])
 

@@ -37,4 +37,8 @@ asj_status run_bounds(asj_context *context, const subject *s, uint16_t *scratch,
 size_t gate_size(const subject *s);
 asj_status run_gate(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 
+/* Which candidates are near a geometry (near_operation.c). */
+size_t near_size(const subject *s);
+asj_status run_near(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+
 #endif

@@ -20,7 +20,7 @@ ALLOWED = {
     "src/detect": ["src/core", "src/segments"],
     "src/geometry": ["src/core"],
     "src/match": ["src/core", "src/segments", "src/geometry"],  # and detect's results, which are public
-    "src/simd": ["src/shared", "src/core", "src/detect", "src/match"],
+    "src/simd": ["src/shared", "src/core", "src/detect", "src/geometry", "src/match"],
     "src/cl": ["src/core", "src/detect", "src/match", "kernels"],
     "src": ["src/core", "src/segments", "src/detect", "src/geometry", "src/match", "src/simd", "src/cl"],
     "src/io": ["src/shared"],

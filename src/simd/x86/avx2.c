@@ -10,6 +10,7 @@
 #include "fans.h"
 #include "gates.h"
 #include "lines.h"
+#include "nears.h"
 #include "patches.h"
 #include "strips.h"
 #include "simd/variants.h"
@@ -32,4 +33,6 @@ void asj_fill_avx2(const asj_ops *ops)
     ops->patch->normalise = patch_normalise_avx2;
     ops->disc->compare = disc_compare_avx2;
     ops->gate->pass = support_gate_avx2;
+    ops->near->lines = near_lines_avx2;
+    ops->near->places = near_places_avx2;
 }

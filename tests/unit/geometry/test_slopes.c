@@ -148,7 +148,7 @@ static void a_first_look_leaves_out_what_is_far(void **state)
             if (k % 2)
                 list[k].x2 = synth_random_between(&random, 0, size);
         }
-        assert_true(asj_near_prepare(&memory, &set));
+        assert_true(asj_near_prepare(&memory, &asj_near_reference, &set));
         const int32_t found = asj_near(&set, COUNT, &m.view, limit, near);
         for (int32_t k = 0; k < COUNT; k++) {
             const int32_t listed = at < found && near[at] == (uint32_t)k;
