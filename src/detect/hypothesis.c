@@ -101,13 +101,20 @@ void asj_hypothesis_insert(asj_hypothesis *hypothesis, const asj_hypothesis_bran
     hypothesis->branches[i] = *branch;
 }
 
-int asj_hypothesis_has_opening(const asj_hypothesis *hypothesis, double least)
+int asj_hypothesis_opens(const asj_hypothesis *hypothesis, const int *keep, double least)
 {
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         for (int32_t j = i + 1; j < hypothesis->branch_count; j++) {
-            double d = asj_angle_distance(hypothesis->branches[i].angle, hypothesis->branches[j].angle);
+            if (keep && !(keep[i] && keep[j]))
+                continue;
+            const double d = asj_angle_distance(hypothesis->branches[i].angle, hypothesis->branches[j].angle);
             if (d > 0 && d < ASJ_PI && d >= least && d <= ASJ_PI - least)
                 return 1;
         }
     return 0;
+}
+
+int asj_hypothesis_has_opening(const asj_hypothesis *hypothesis, double least)
+{
+    return asj_hypothesis_opens(hypothesis, NULL, least);
 }

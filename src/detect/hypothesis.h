@@ -110,7 +110,8 @@ int asj_hypothesis_is_free(const asj_hypothesis *hypothesis, double angle, doubl
 /* Adds a branch, for which there is room, behind those of smaller angles. */
 void asj_hypothesis_insert(asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch);
 
-/* 1 when two branches open by at least `least` radians and at most pi - least. */
+/* 1 when two branches open by at least `least` radians and at most pi - least; of those whose flag is not 0. */
 int asj_hypothesis_has_opening(const asj_hypothesis *hypothesis, double least);
+int asj_hypothesis_opens(const asj_hypothesis *hypothesis, const int *keep, double least);
 
 #endif

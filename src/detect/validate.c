@@ -130,45 +130,36 @@ static int may_be_meaningful(const asj_context *context, const asj_frame *frame,
            asj_strip_passes(context, frame, options, &longer, EARLY_SHORTEST, limit);
 }
 
-static int is_opened(const asj_hypothesis *hypothesis, const int *keep, double least)
-{
-    asj_hypothesis rest = *hypothesis;
-    asj_hypothesis_select(&rest, keep);
-    return asj_hypothesis_has_opening(&rest, least);
-}
-
 static double early_opening(const asj_detect_options *options)
 {
     return fmax(options->minimum_opening - EARLY_OPENING, 0) * ASJ_DEGREE;
-}
-
-static int has_opening(const asj_detect_options *options, const asj_hypothesis *hypothesis, const int *keep)
-{
-    return is_opened(hypothesis, keep, early_opening(options));
 }
 
 /* The hypothesis is rejected as soon as no two of the branches that may be left open. */
 void asj_reject_early(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                       asj_hypothesis *hypothesis)
 {
+    const double least = early_opening(options);
     int keep[ASJ_MAX_BRANCHES];
     if (!options->strip_test)
         return;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         keep[i] = 1;
-    int opens = has_opening(options, hypothesis, keep);
+    int opens = asj_hypothesis_opens(hypothesis, keep, least);
     for (int32_t i = 0; i < hypothesis->branch_count && opens; i++) {
         keep[i] = may_be_meaningful(context, frame, options, hypothesis, &hypothesis->branches[i]);
-        opens = keep[i] || has_opening(options, hypothesis, keep);
+        opens = keep[i] || asj_hypothesis_opens(hypothesis, keep, least);
     }
     asj_hypothesis_select(hypothesis, keep);
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
 }
 
+/* It may move by max_move at least, whatever its directions are: most have moved by less. */
 static int has_moved_far(const asj_detect_options *options, const asj_hypothesis *hypothesis, double slack)
 {
     const double moved = hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0);
-    return moved > options->max_move + asj_locate_most_move(options, hypothesis) + slack;
+    return moved > options->max_move + options->max_move + slack &&
+           moved > options->max_move + asj_locate_most_move(options, hypothesis) + slack;
 }
 
 /* Whether it seems to reach the junction. Ends of soft edges are uncertain. */
@@ -183,13 +174,19 @@ static int may_reach(const asj_context *context, const asj_frame *frame, const a
 void asj_reject_oriented(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          asj_hypothesis *hypothesis)
 {
+    const double least = early_opening(options);
     int keep[ASJ_MAX_BRANCHES];
     if (!options->strip_test || hypothesis->branch_count < 2) /* those of complete_step.c have one */
         return;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        keep[i] = 1;
+    int opens = asj_hypothesis_opens(hypothesis, keep, least);
+    for (int32_t i = 0; i < hypothesis->branch_count && opens; i++) {
         keep[i] = may_reach(context, frame, options, hypothesis, &hypothesis->branches[i]);
+        opens = keep[i] || asj_hypothesis_opens(hypothesis, keep, least);
+    }
     asj_hypothesis_select(hypothesis, keep);
-    if (!asj_hypothesis_has_opening(hypothesis, early_opening(options)) || has_moved_far(options, hypothesis, ORIENTED_MOVE))
+    if (!opens || has_moved_far(options, hypothesis, ORIENTED_MOVE))
         hypothesis->branch_count = 0;
 }
 
@@ -199,12 +196,15 @@ static double least_length(const asj_frame *frame, const asj_detect_options *opt
     return options->minimum_length / asj_octave_scale(frame->octave);
 }
 
-/* Sets the branch's number of false alarms; returns whether the branch is to be kept: ALONE, only WITH_OTHERS, IF_OTHERS_OPEN. */
+/* Returns whether the branch is to be kept, ALONE, only WITH_OTHERS, IF_OTHERS_OPEN; sets its number of false alarms then. */
 static int judge(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                  const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
     const double log_epsilon = log(options->epsilon), explained = hypothesis->explained;
     asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
+    if (branch->length < least_length(frame, options) || branch->length <= 0 || fabs(branch->offset) > LARGEST_OFFSET ||
+        (options->ignore_frame && on_frame(frame, hypothesis, branch)))
+        return NOT_AT_ALL;
     const asj_strip strip = asj_strip_test(context, frame, options, &line);
     branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, &strip, branch->width, explained) : strip.log_nfa;
     if (options->strip_test && branch->log_nfa > log_epsilon && frame->octave > 0 && branch->width > SOFT) {
@@ -212,9 +212,7 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
         const asj_strip shorter = asj_strip_test(context, frame, options, &line);
         branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width, explained));
     }
-    if (branch->length < least_length(frame, options) || branch->length <= 0 || fabs(branch->offset) > LARGEST_OFFSET ||
-        !reaches(frame, options, branch, &strip) || asj_is_tilted(options, &strip.sums) ||
-        (options->ignore_frame && on_frame(frame, hypothesis, branch)))
+    if (!reaches(frame, options, branch, &strip) || asj_is_tilted(options, &strip.sums))
         return NOT_AT_ALL;
     if (!options->strip_test || branch->log_nfa <= log_epsilon)
         return options->strip_test && frame->octave <= 0 && strip.near_share < LEAST_IMAGE_SHARE ? IF_OTHERS_OPEN : ALONE;
@@ -234,7 +232,7 @@ static void judge_pairs(const asj_frame *frame, const asj_detect_options *option
         verdict[i] = keep[i];
         keep[i] = verdict[i] == ALONE;
     }
-    const int opens = is_opened(hypothesis, keep, least);
+    const int opens = asj_hypothesis_opens(hypothesis, keep, least);
     for (int32_t i = 0; i < count; i++)
         keep[i] |= verdict[i] == IF_OTHERS_OPEN && opens;
     for (int32_t i = 0; i < count; i++)
@@ -283,18 +281,31 @@ static void meet_again(const asj_context *context, const asj_frame *frame, const
         *hypothesis = before;
 }
 
+/* What judge() says of the branches, as long as two of those that it has not rejected open; returns whether they do. */
+static int judge_all(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                     asj_hypothesis *hypothesis, int *verdicts)
+{
+    const double least = options->minimum_opening * ASJ_DEGREE;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        verdicts[i] = ALONE;
+    int opens = asj_hypothesis_opens(hypothesis, verdicts, least);
+    for (int32_t i = 0; i < hypothesis->branch_count && opens; i++) {
+        verdicts[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i]);
+        opens = verdicts[i] != NOT_AT_ALL || asj_hypothesis_opens(hypothesis, verdicts, least);
+    }
+    return opens;
+}
+
 /* Lines over whole branches may move the junction by max_move again after those of the first fit (locate.c); what moves farther has
  * drifted to another edge. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
     const int32_t count = hypothesis->branch_count;
-    if (has_moved_far(options, hypothesis, 0)) {
+    if (has_moved_far(options, hypothesis, 0) || !judge_all(context, frame, options, hypothesis, keep)) {
         hypothesis->branch_count = 0;
         return;
     }
-    for (int32_t i = 0; i < count; i++)
-        keep[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i]);
     judge_pairs(frame, options, hypothesis, keep);
     merge(options, hypothesis, keep);
     asj_hypothesis_select(hypothesis, keep);
