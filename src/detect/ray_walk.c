@@ -148,38 +148,40 @@ void asj_ray_walk_finish(const asj_scan *scan, asj_ray *ray)
         ray->axial = ray->forward + bridge;
 }
 
-/* gamma of a pixel, from its gradient and a direction, in 2^-24. */
-static int32_t gamma_along(int32_t gx, int32_t gy, int32_t ux, int32_t uy)
+/* gamma of the pixel at a place, 1/65536 px, in 2^-24. The border's margin is zero. */
+static inline int32_t gamma_at(const asj_frame *frame, int64_t x, int64_t y, int32_t ux, int32_t uy)
 {
+    const ptrdiff_t at = (ptrdiff_t)(y >> 16) * frame->stride + (ptrdiff_t)(x >> 16);
+    const int32_t gx = frame->gradient_x[at], gy = frame->gradient_y[at];
     const int32_t gamma = abs(gy * ux - gx * uy) - abs(gx * ux + gy * uy);
     return gamma > 0 ? gamma : 0;
 }
 
-/* Whether there is an edge along the ray at radius r: three pixels across, rounded, of which the middle one is mostly enough. The
- * border's margin is zero. */
-static int has_edge(const asj_frame *frame, const asj_ray_direction *way, int32_t r)
+/* The first step from radius r on, before `last`, that has no edge along the ray under it: three pixels across, rounded, of which
+ * the middle one is mostly enough. */
+static int32_t end_of_edge(const asj_frame *frame, const asj_ray_direction *way, int32_t r, int32_t last)
 {
-    const int64_t x = way->x + ((r * way->ux) >> 14) + 32768, y = way->y + ((r * way->uy) >> 14) + 32768;
-    const int64_t across_x = -(way->uy >> 14), across_y = way->ux >> 14;
+    const asj_frame planes = *frame; /* in registers */
+    const int64_t across_x = -(way->uy >> 14), across_y = way->ux >> 14, start_x = way->x + 32768, start_y = way->y + 32768;
     const int32_t ux = (int32_t)(way->ux >> 16), uy = (int32_t)(way->uy >> 16);
-    const ptrdiff_t middle = (ptrdiff_t)(y >> 16) * frame->stride + (ptrdiff_t)(x >> 16);
-    if (x >> 16 < 0 || y >> 16 < 0 || x >> 16 >= frame->width || y >> 16 >= frame->height)
-        return 0;
-    int32_t sum = gamma_along(frame->gradient_x[middle], frame->gradient_y[middle], ux, uy);
-    for (int32_t d = -1; d <= 1 && sum < ASJ_SCAN_EDGE; d += 2) {
-        const ptrdiff_t at = (ptrdiff_t)((y + d * across_y) >> 16) * frame->stride + (ptrdiff_t)((x + d * across_x) >> 16);
-        sum += gamma_along(frame->gradient_x[at], frame->gradient_y[at], ux, uy);
+    for (int64_t to_x = r * way->ux, to_y = r * way->uy; r < last; r++, to_x += way->ux, to_y += way->uy) {
+        const int64_t x = start_x + (to_x >> 14), y = start_y + (to_y >> 14);
+        if ((uint64_t)(x >> 16) >= (uint64_t)planes.width || (uint64_t)(y >> 16) >= (uint64_t)planes.height)
+            break; /* outside, on either side */
+        int32_t sum = gamma_at(&planes, x, y, ux, uy);
+        for (int32_t d = -1; d <= 1 && sum < ASJ_SCAN_EDGE; d += 2)
+            sum += gamma_at(&planes, x + d * across_x, y + d * across_y, ux, uy);
+        if (sum < ASJ_SCAN_EDGE)
+            break;
     }
-    return sum >= ASJ_SCAN_EDGE;
+    return r;
 }
 
 /* Passes over the steps from here on that have an edge under them beyond doubt. */
 static void pass_over(const asj_scan *scan, const asj_frame *frame, asj_ray_walk *walk)
 {
     const int32_t last = scan->longest > 0 ? scan->longest + ASJ_RAY_PLAIN : INT32_MAX;
-    int32_t end = walk->r;
-    while (end < last && has_edge(frame, &walk->way, end))
-        end++;
+    const int32_t end = end_of_edge(frame, &walk->way, walk->r, last);
     if (end - walk->r <= ASJ_RAY_PLAIN)
         return;
     walk->r = end - ASJ_RAY_PLAIN;
