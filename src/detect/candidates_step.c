@@ -9,35 +9,46 @@
 
 #define AT_ONCE (1 << 20) /* px */
 
-/* Four masks at once: their bits are added up in pairs, in fours, .. */
-size_t asj_candidates_count(const uint16_t *masks, size_t count)
+#define AT_A_TIME 4 /* masks in a word */
+
+/* Bits of four masks: added up in pairs, in fours, .. */
+static size_t count_word(uint64_t four)
 {
     const uint64_t pairs = 0x5555555555555555, fours = 0x3333333333333333, eights = 0x0f0f0f0f0f0f0f0f;
+    four -= four >> 1 & pairs;
+    four = (four & fours) + (four >> 2 & fours);
+    four = (four + (four >> 4)) & eights;
+    return (size_t)((four * 0x0101010101010101) >> 56);
+}
+
+size_t asj_candidates_count(const uint16_t *masks, size_t count)
+{
+    const size_t whole = count - count % AT_A_TIME;
     size_t bits = 0;
-    for (size_t i = 0; i < count; i += 4) {
-        uint64_t four = 0;
-        memcpy(&four, masks + i, (count - i < 4 ? count - i : 4) * sizeof *masks);
-        four -= four >> 1 & pairs;
-        four = (four & fours) + (four >> 2 & fours);
-        four = (four + (four >> 4)) & eights;
-        bits += (size_t)((four * 0x0101010101010101) >> 56);
+    uint64_t four = 0;
+    for (size_t i = 0; i < whole; i += AT_A_TIME) {
+        memcpy(&four, masks + i, sizeof four);
+        bits += count_word(four);
     }
-    return bits;
+    four = 0;
+    memcpy(&four, masks + whole, (count - whole) * sizeof *masks);
+    return bits + count_word(four);
 }
 
 static asj_status dump(const asj_detection_run *run)
 {
     const size_t blocks = (size_t)run->frame->blocks, runs = blocks * (size_t)run->frame->height;
-    int32_t *points = asj_allocate_list(&run->context->memory, run->candidate_count, 2 * sizeof *points), *next = points;
+    const size_t count = asj_candidates_count(run->candidates, runs);
+    int32_t *points = asj_allocate_list(&run->context->memory, count, 2 * sizeof *points), *next = points;
     if (!points)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", run->candidate_count);
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", count);
     for (size_t i = 0; i < runs; i++)
         for (int32_t bit = 0; bit < ASJ_LANES; bit++)
             if (run->candidates[i] >> bit & 1) {
                 *next++ = (int32_t)(i % blocks) * ASJ_LANES + bit;
                 *next++ = (int32_t)(i / blocks);
             }
-    asj_detection_run_dump_points(run, ASJ_STAGE_CANDIDATES, "candidates", run->candidate_count, points);
+    asj_detection_run_dump_points(run, ASJ_STAGE_CANDIDATES, "candidates", count, points);
     asj_release(&run->context->memory, points);
     return ASJ_OK;
 }
@@ -76,7 +87,6 @@ asj_status asj_step_candidates(asj_detection_run *run)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the candidates");
     if (run->size > 0) {
         asj_sizes_mark_candidates(run);
-        run->candidate_count = asj_candidates_count(run->candidates, runs);
         return ASJ_OK;
     }
     asj_status status = run->options->seeds == ASJ_SEEDS_SEGMENTS
@@ -84,8 +94,5 @@ asj_status asj_step_candidates(asj_detection_run *run)
                             : find_in_field(run);
     if (status == ASJ_OK && run->region)
         status = asj_region_clear_candidates(run);
-    if (status != ASJ_OK)
-        return status;
-    run->candidate_count = asj_candidates_count(run->candidates, runs);
-    return context->options.dump ? dump(run) : ASJ_OK;
+    return status == ASJ_OK && context->options.dump ? dump(run) : status;
 }

@@ -47,7 +47,7 @@ typedef struct asj_detection_run {
     asj_scratch scratch;             /* for as many threads as the context has */
 
     uint16_t *candidates;            /* step 2: one bit for each pixel; run b of row y at [y * blocks + b] */
-    size_t candidate_count;
+    size_t candidate_count;          /* step 3 counts them */
     asj_isotropic_junction *isotropic; /* step 3 */
     size_t isotropic_count;
     asj_guess *guesses;              /* of these; after the location those that a better one hides */

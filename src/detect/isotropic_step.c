@@ -26,6 +26,7 @@ static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom
     asj_context *context = run->context;
     size_t starts[ROWS + 1];
     count_candidates(run, top, bottom, starts);
+    run->candidate_count += starts[bottom - top];
     const asj_candidate_rows rows = {top, bottom, run->candidates, starts};
     const size_t total = starts[bottom - top], most = run->isotropic_count + total, size = sizeof(asj_isotropic_junction);
     asj_status status = asj_grow(&context->memory, &l->records, &l->record_capacity, asj_detection_run_room(total), size, 0);
