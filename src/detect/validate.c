@@ -74,7 +74,7 @@
  * .928; but where a blurred corner explains what is there it stays. */
 #define PAIR_LOG (2 * ASJ_LN_10)
 
-enum { NOT_AT_ALL, IF_OTHERS_OPEN, WITH_OTHERS, ALONE };
+enum { NOT_AT_ALL, IF_OTHERS_OPEN, WITH_OTHERS, ALONE }; /* 0 = may not be left */
 
 static double log_places(const asj_frame *frame)
 {
@@ -121,7 +121,7 @@ static void merge(const asj_detect_options *options, const asj_hypothesis *hypot
 
 /* Whether a strip of some length is meaningful, or nearly so: the angle will still become better. */
 static int may_be_meaningful(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                             const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+                             const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
     const double limit = log(options->epsilon) + ASJ_EARLY_LOG_NFA;
     const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LENGTH};
@@ -135,21 +135,41 @@ static double early_opening(const asj_detect_options *options)
     return fmax(options->minimum_opening - EARLY_OPENING, 0) * ASJ_DEGREE;
 }
 
-/* The hypothesis is rejected as soon as no two of the branches that may be left open. */
+/* What is asked of a branch, and whether it may be left. */
+typedef int (*question)(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                        const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch);
+
+/* Asks the branches, the weakest first, as long as two of those that may be left open by `least` radians; returns whether they
+ * do. */
+static int ask_all(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, question ask,
+                   double least, asj_hypothesis *hypothesis, int *answers)
+{
+    const int32_t count = hypothesis->branch_count;
+    asj_hypothesis_branch *const branches = hypothesis->branches;
+    int32_t order[ASJ_MAX_BRANCHES] = {0};
+    for (int32_t i = 0; i < count; i++) {
+        int32_t k = i;
+        for (; k > 0 && branches[order[k - 1]].strength > branches[i].strength; k--)
+            order[k] = order[k - 1];
+        order[k] = i;
+    }
+    for (int32_t i = 0; i < ASJ_MAX_BRANCHES; i++)
+        answers[i] = 1;
+    int opens = asj_hypothesis_opens(hypothesis, answers, least);
+    for (int32_t k = 0; k < count && opens; k++) {
+        answers[order[k]] = ask(context, frame, options, hypothesis, &branches[order[k]]);
+        opens = answers[order[k]] || asj_hypothesis_opens(hypothesis, answers, least);
+    }
+    return opens;
+}
+
 void asj_reject_early(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                       asj_hypothesis *hypothesis)
 {
-    const double least = early_opening(options);
     int keep[ASJ_MAX_BRANCHES];
     if (!options->strip_test)
         return;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        keep[i] = 1;
-    int opens = asj_hypothesis_opens(hypothesis, keep, least);
-    for (int32_t i = 0; i < hypothesis->branch_count && opens; i++) {
-        keep[i] = may_be_meaningful(context, frame, options, hypothesis, &hypothesis->branches[i]);
-        opens = keep[i] || asj_hypothesis_opens(hypothesis, keep, least);
-    }
+    const int opens = ask_all(context, frame, options, may_be_meaningful, early_opening(options), hypothesis, keep);
     asj_hypothesis_select(hypothesis, keep);
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
 }
@@ -164,7 +184,7 @@ static int has_moved_far(const asj_detect_options *options, const asj_hypothesis
 
 /* Whether it seems to reach the junction. Ends of soft edges are uncertain. */
 static int may_reach(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                     const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+                     const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
     const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
     return branch->width > SOFT ||
@@ -174,17 +194,10 @@ static int may_reach(const asj_context *context, const asj_frame *frame, const a
 void asj_reject_oriented(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          asj_hypothesis *hypothesis)
 {
-    const double least = early_opening(options);
     int keep[ASJ_MAX_BRANCHES];
     if (!options->strip_test || hypothesis->branch_count < 2) /* those of complete_step.c have one */
         return;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        keep[i] = 1;
-    int opens = asj_hypothesis_opens(hypothesis, keep, least);
-    for (int32_t i = 0; i < hypothesis->branch_count && opens; i++) {
-        keep[i] = may_reach(context, frame, options, hypothesis, &hypothesis->branches[i]);
-        opens = keep[i] || asj_hypothesis_opens(hypothesis, keep, least);
-    }
+    const int opens = ask_all(context, frame, options, may_reach, early_opening(options), hypothesis, keep);
     asj_hypothesis_select(hypothesis, keep);
     if (!opens || has_moved_far(options, hypothesis, ORIENTED_MOVE))
         hypothesis->branch_count = 0;
@@ -281,28 +294,14 @@ static void meet_again(const asj_context *context, const asj_frame *frame, const
         *hypothesis = before;
 }
 
-/* What judge() says of the branches, as long as two of those that it has not rejected open; returns whether they do. */
-static int judge_all(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                     asj_hypothesis *hypothesis, int *verdicts)
-{
-    const double least = options->minimum_opening * ASJ_DEGREE;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        verdicts[i] = ALONE;
-    int opens = asj_hypothesis_opens(hypothesis, verdicts, least);
-    for (int32_t i = 0; i < hypothesis->branch_count && opens; i++) {
-        verdicts[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i]);
-        opens = verdicts[i] != NOT_AT_ALL || asj_hypothesis_opens(hypothesis, verdicts, least);
-    }
-    return opens;
-}
-
 /* Lines over whole branches may move the junction by max_move again after those of the first fit (locate.c); what moves farther has
  * drifted to another edge. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
     const int32_t count = hypothesis->branch_count;
-    if (has_moved_far(options, hypothesis, 0) || !judge_all(context, frame, options, hypothesis, keep)) {
+    if (has_moved_far(options, hypothesis, 0) ||
+        !ask_all(context, frame, options, judge, options->minimum_opening * ASJ_DEGREE, hypothesis, keep)) {
         hypothesis->branch_count = 0;
         return;
     }
