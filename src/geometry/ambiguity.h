@@ -10,8 +10,8 @@
  * a rival that has -190 to -350; of 1083 pairs of rooms none is accepted beside one of -66 or less.) */
 #define ASJ_SURE_RIVAL (-100)
 
-/* The finalist with the largest evidence that contradicts number `best`, which is e->first afterwards, and that neither colours nor
- * pictures contradict; -1 = none. *doubt: 1 when they are rather for it. */
+/* The finalist with the largest evidence that contradicts number `best`, which is e->first afterwards, or that pictures prefer to
+ * it (contradiction.h), and that neither colours nor pictures contradict; -1 = none. *doubt: 1 when they are rather for it. */
 int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt);
 
 /* May the rival be the right one as well? inliers: of the best one. */

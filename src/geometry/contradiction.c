@@ -15,7 +15,8 @@
  * Two motions that are OTHER_MOTION apart cannot both be right, even if their matches are of different places and contradict each
  * other in nothing. So of these pictures prefer one where they agree with it as usual, CLEARLY better than with the other one, and
  * say SURELY_MORE nats more for it. The nats, because what sees one plane through two motions agrees as well with either, and says
- * more for the one that has another plane as well; the share, because a plane that is large says much for any motion.
+ * more for the one that has another plane as well; the share, because a plane that is large says much for any motion. Grey
+ * pictures prefer none, and nothing that is not COMPARABLE in evidence is preferred. What comes of it: strike_out.c, ambiguity.c.
  *
  * And pictures disagree with a geometry by themselves where they agree (picture_agreement.c) by less than AGREEMENT, which goes
  * down where it has MUCH evidence.
@@ -43,9 +44,9 @@
 #define AS_GOOD 0.1  /* of shares of agreement: smaller differences say nothing, .. */
 #define BETTER 4.0   /* .. and what agrees better by another 1/BETTER contradicts the other one */
 #define OTHER_MOTION (15 * ASJ_DEGREE)
-#define HALF 0.5          /* of the log evidence: so much more is not outweighed by pictures */
+#define COMPARABLE 0.5    /* of the other one's log evidence: what has less is not preferred, whatever pictures say */
 #define CLEARLY 0.2       /* of shares of agreement */
-#define SURELY_MORE 10.0  /* nats; more is said for few wrong motions beside a right one, which has far more evidence (WEIGHT) */
+#define SURELY_MORE 10.0  /* nats; a few wrong motions have more than the right one, whose evidence outweighs that (strike_out.c) */
 #define AGREEMENT 0.36 /* one right motion of 182 has less; a geometry of unrelated rooms has .29 in the median */
 #define MUCH (-60.0) /* log10 NFA */
 #define VERY_MUCH (-150.0)
@@ -140,12 +141,12 @@ static int32_t exclude_each_other(const asj_model *a, const asj_model *b)
     return asj_rotation_angle(turn) > OTHER_MOTION || asj_dot3(a->translation, b->translation) < cos(OTHER_MOTION);
 }
 
-/* Of two such motions, may pictures prefer one? What has far less evidence is not preferred, whatever they say. */
+/* Of two such motions, may pictures in colours prefer one? */
 static int32_t may_prefer(const asj_estimation *e)
 {
     const double first = e->first.model->evidence, other = e->other.model->evidence;
-    return e->pictures && e->pictures->of[0].channel_count == ASJ_MOST_CHANNELS && fmin(first, other) > HALF * fmax(first, other) &&
-           exclude_each_other(e->first.model, e->other.model);
+    return e->pictures && e->pictures->of[0].channel_count == ASJ_MOST_CHANNELS &&
+           fmin(first, other) > COMPARABLE * fmax(first, other) && exclude_each_other(e->first.model, e->other.model);
 }
 
 /* How many nats more the pictures say for the other one, where they prefer that; negative where they prefer the first one. */
@@ -156,9 +157,9 @@ static double preference(asj_estimation *e)
     const asj_agreement *first = &e->first.agreement, *other = asj_agreement_of_other(e);
     if (fmin(first->known, other->known) < ASJ_LEAST_KNOWN)
         return 0;
-    const double better = other->share - first->share, more = asj_agreement_said(*other) - asj_agreement_said(*first);
+    const double closer = other->share - first->share, more = asj_agreement_said(*other) - asj_agreement_said(*first);
     const int32_t agrees = fmax(first->share, other->share) > ASJ_USUAL_AGREEMENT;
-    return agrees && fabs(better) > CLEARLY && fabs(more) > SURELY_MORE && better * more > 0 ? more : 0;
+    return agrees && fabs(closer) > CLEARLY && fabs(more) > SURELY_MORE && closer * more > 0 ? more : 0;
 }
 
 static void take(asj_estimation *e, const asj_model *m, asj_compared *as)

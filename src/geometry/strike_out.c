@@ -2,8 +2,9 @@
 /* Colours and pictures overrule evidence (contradiction.c).
  *
  * What pictures disagree with by themselves is struck out as long as it is the best. What they contradict in favour of another
- * geometry that is not chance either is struck out as well, and that one is followed as the best one would have been (motions.c).
- * So are rivals with less evidence: they would make the pose uncertain (answer.c). */
+ * geometry that is not chance either is struck out as well, and so is a motion where they prefer another one that excludes it, by
+ * WEIGHT times what that lacks of evidence; that one is followed as the best one would have been (motions.c). Rivals with less
+ * evidence are struck out, too: they would make the pose uncertain (answer.c). */
 #include "strike_out.h"
 #include "contradiction.h"
 #include "core/angle.h"
@@ -16,7 +17,7 @@
 
 #define OVERRULED 1.2 /* what speaks against the best one, where 1 contradicts another: it has the most evidence for it. (In 821
                        * pairs two right ones have more than that against them, the next 1.17; of 47 wrong ones in front 36.) */
-#define WEIGHT 1.5  /* of evidence, where pictures prefer a motion */
+#define WEIGHT 1.5  /* of evidence, beside the nats that pictures say more for a motion that they prefer */
 #define SAME_MOTION (3 * ASJ_DEGREE)
 #define MOST_STRUCK 4 /* times that the best one changes: in 198 pairs of rooms once in six, never twice */
 #define MOST_TRIED 4  /* others, each time: of what is preferred to the best one something else may have more evidence still */
@@ -45,7 +46,8 @@ static void weigh(asj_estimation *e, int32_t best, double for_it[ASJ_MOST_MODELS
     }
 }
 
-/* All with more evidence than number `chosen` that colours or pictures contradict in its favour. */
+/* All with more evidence than number `chosen` that colours or pictures contradict in its favour, or to which pictures prefer it by
+ * more than that outweighs. */
 static void strike(asj_estimation *e, int32_t chosen)
 {
     const asj_model *c = &e->finalists[chosen];
@@ -60,7 +62,8 @@ static void strike(asj_estimation *e, int32_t chosen)
     }
 }
 
-/* What contradicts the best one and is contradicted by colours or pictures is no other motion that it might be (answer.c). */
+/* What is no other motion that the best one might be (answer.c): what contradicts it and is contradicted itself, by colours,
+ * pictures or the way that is up, and a motion to which pictures prefer it. */
 static void strike_rivals(asj_estimation *e)
 {
     const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
