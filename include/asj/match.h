@@ -182,8 +182,10 @@ typedef struct asj_match_result {
  * planes the pose is left out. Where the first one, of known cameras, has rivals or leaves its motion open, the second one holds,
  * whatever its matches, when it accepts the same pose or the rival's, or another one that is sure, with more evidence; only then
  * where the first one has no matches; and not when it accepts none, or one that is upside down, or less surely another one of a
- * motion that was open. Beside a rival that is sure by itself it needs much more evidence. Junctions of octave -1 alone (octaves 1)
- * have no first ones to ask. Everything is in pixels of the images.
+ * motion that was open. Beside a rival that is sure by itself it needs much more evidence. Where the second one has rivals and much
+ * more evidence for another pose than the first one has for that which it accepts, they are ASJ_GEOMETRY_AMBIGUOUS, too, unless the
+ * images agree clearly better with the first one. Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is
+ * in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in

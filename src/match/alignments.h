@@ -37,7 +37,7 @@ typedef struct asj_alignments {
 /* Room for so many more. ASJ_ERROR_MEMORY. */
 asj_status asj_alignments_reserve(asj_context *context, asj_alignments *known, size_t more);
 
-/* The number of the one with this key, which is added where there is none: `first` tells for whom. */
+/* The number of the one with this key, which is added where there is none (there must be room): `first` tells for whom. */
 uint32_t asj_alignments_number(asj_alignments *known, const asj_alignment_key *key, uint32_t first);
 
 void asj_alignments_free(asj_memory *memory, asj_alignments *known);

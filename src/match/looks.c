@@ -6,7 +6,8 @@
  *   - Of two accepted poses that agree the surer one is the answer.                                            compare()
  *   - Of two that are at odds pictures decide, then much more evidence, then which one is upside down; or
  *     nothing does.                                                                                            decide()
- *   - Images that repeat themselves need more than other images do.                             repeats(), is_outdone()
+ *   - Images that repeat themselves need more than other images do, and upsampled ones that do so leave what the
+ *     images accept open where they have much more evidence for another motion.                 repeats(), is_outdone()
  *   - What the images leave open the upsampled ones settle: by the same motion or its rival, or by another one
  *     with more evidence; but not upside down.                                            settles(), look_beyond()
  *   - The images' colours answer where there is no geometry yet or none that is sure.                          asj_looks_take()
@@ -28,7 +29,7 @@
 #define SAME_POSE (4 * ASJ_DEGREE)   /* where one of the two is not accepted and does not say how sure it is */
 #define LEAST_APART (3 * ASJ_DEGREE) /* of two that do, no less is at odds, */
 #define SURELY_APART 6.5             /* and no less than so many standard deviations (of others up to 5.9) */
-#define OTHER_POSE (8 * ASJ_DEGREE)  /* where pictures decide */
+#define OTHER_POSE (8 * ASJ_DEGREE)  /* another motion: pictures decide, and evidence may leave it open */
 #define HALF_TURN 1e-6               /* 2 sin of an angle that is 180 degrees */
 
 /* Evidence of the upsampled images, or of the colours: */
@@ -244,8 +245,8 @@ static asj_looks look_beyond(const asj_match_result *own, const asj_geometry *up
 }
 
 /* Have upsampled images that repeat themselves so much more evidence for another motion that an accepted one is not sure, unless
- * pictures agree better with it? (Of six pairs of 400 the two looks have one motion in three; in two the images' is right, which
- * pictures say, and in one that of the upsampled ones.) */
+ * pictures agree better with it? (Six pairs of 400 repeat themselves with so much more: three for the images' own motion; two are
+ * wrong, which pictures say; one is right.) */
 static int32_t is_outdone(const asj_geometry *own, const asj_geometry *upsampled)
 {
     return upsampled->status == ASJ_GEOMETRY_AMBIGUOUS && own->has_pose && upsampled->has_pose && are_others(own, upsampled) &&

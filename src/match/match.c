@@ -247,7 +247,8 @@ static asj_status match_features(asj_context *context, const asj_match_options *
     const int32_t upsampled = by[0].x > 1 || by[1].x > 1, expected = upsampled && says_where(options, known);
     const asj_match_options of_upsampled = options_for(options, by, expected);
     asj_expected places = {{NULL, NULL}, {NULL, NULL}};
-    asj_alignments own = {NULL, NULL, 0, 0, 0}; /* upsampled the lists' steps are not as many (align.c) */
+    /* In upsampled images a geometry's list has half the steps of the others (align.c): hardly anything comes again. */
+    asj_alignments own = {NULL, NULL, 0, 0, 0};
     if (!alignments && !upsampled && options->geometry.model != ASJ_GEOMETRY_NONE)
         alignments = &own;
     asj_match_run run = {.context = context, .options = upsampled ? &of_upsampled : options, .image = {features[0], features[1]},
