@@ -149,14 +149,22 @@ int unit_set_up_scene(void **state, synth_scene *scene, double blur, double nois
     return failed;
 }
 
+void unit_nothing_left(const unit_counter *counter)
+{
+    if (counter->live == 0)
+        return;
+    print_error("%ld blocks of memory were not released\n", counter->live);
+    exit(EXIT_FAILURE);
+}
+
 int unit_tear_down(void **state)
 {
     unit_fixture *f = *state;
     asj_frame_free(&f->context->memory, &f->frame);
     asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
+    unit_nothing_left(&f->counter);
     free(f);
-    return leaked;
+    return 0;
 }
 
 void unit_half_plane(synth_scene *scene, int32_t size, synth_point through, double angle, double low, double high)

@@ -42,6 +42,10 @@ asj_memory unit_memory(unit_counter *counter);
 asj_context *unit_context(unit_counter *counter, int32_t threads);
 void unit_context_free(unit_counter *counter, asj_context **context);
 
+/* For the tear-down of a group: ends the program, failed, when anything leaks. (CMocka 1.1 prints that a group's tear-down fails,
+ * but counts no failure: the program would end with 0.) */
+void unit_nothing_left(const unit_counter *counter);
+
 /* Whether the allocation that was to fail has been asked for; none is to fail any more. A test of failing allocations goes on until
  * this is 0, not until a call succeeds: what does without some memory would end it too soon. */
 int unit_reached(unit_counter *counter);
@@ -70,7 +74,8 @@ void unit_frame_of(asj_context *context, synth_scene *scene, double blur, double
                    asj_frame *frame);
 
 /* What most tests share: a context of one thread on the counting allocator, the default options, and the planes of a picture where
- * the test works on one. The functions are CMocka's set-up and tear-down of a group; the latter fails when anything leaks. */
+ * the test works on one. The functions are CMocka's set-up and tear-down of a group; the latter fails when anything
+ * leaks. */
 typedef struct unit_fixture {
     unit_counter counter;
     asj_context *context;
