@@ -28,7 +28,6 @@
 #include "core/angle.h"
 #include "likelihood.h"
 #include "picture_vote.h"
-#include "small_matrix.h"
 #include "upright.h"
 
 #include <math.h>
@@ -134,11 +133,7 @@ static void add_pictures(asj_estimation *e, asj_comparison *c)
 
 static int32_t exclude_each_other(const asj_model *a, const asj_model *b)
 {
-    double turn[9];
-    if (a->kind != ASJ_GEOMETRY_ESSENTIAL || b->kind != ASJ_GEOMETRY_ESSENTIAL)
-        return 0;
-    asj_multiply3_transposed(a->rotation, b->rotation, turn);
-    return asj_rotation_angle(turn) > OTHER_MOTION || asj_dot3(a->translation, b->translation) < cos(OTHER_MOTION);
+    return a->kind == ASJ_GEOMETRY_ESSENTIAL && b->kind == ASJ_GEOMETRY_ESSENTIAL && asj_motions_apart(a, b) > OTHER_MOTION;
 }
 
 /* Of two such motions, may pictures in colours prefer one? */

@@ -188,6 +188,13 @@ int32_t asj_model_complete(asj_model *m)
     return unit_norm(m->view.matrix);
 }
 
+double asj_motions_apart(const asj_model *a, const asj_model *b)
+{
+    double turn[9];
+    asj_multiply3_transposed(a->rotation, b->rotation, turn);
+    return fmax(asj_rotation_angle(turn), acos(fmax(-1, fmin(1, asj_dot3(a->translation, b->translation)))));
+}
+
 void asj_translation_axes(const double t[3], double axis[3], double other[3])
 {
     const double start[3] = {fabs(t[0]) < 0.6, fabs(t[0]) >= 0.6, 0};

@@ -80,6 +80,9 @@ int32_t asj_in_front(const double rotation[9], const double translation[3], cons
 /* Fills view from rotation, translation and planes (essential), or checks it. 0 when it cannot be. */
 int32_t asj_model_complete(asj_model *model);
 
+/* How far two essential matrices are apart: the larger angle of rotation and translation, rad. */
+double asj_motions_apart(const asj_model *a, const asj_model *b);
+
 /* The two directions, at right angles to t and to each other, in which a translation of length 1 moves. */
 void asj_translation_axes(const double t[3], double axis[3], double other[3]);
 

@@ -10,7 +10,6 @@
 #include "core/angle.h"
 #include "geometry_options.h"
 #include "motions.h"
-#include "small_matrix.h"
 #include "stop.h"
 
 #include <math.h>
@@ -89,11 +88,7 @@ static asj_status focus_back(asj_estimation *e, int32_t chosen, const asj_model 
 
 static int32_t are_the_same(const asj_model *a, const asj_model *b)
 {
-    double turn[9];
-    if (a->kind != ASJ_GEOMETRY_ESSENTIAL || b->kind != ASJ_GEOMETRY_ESSENTIAL)
-        return 0;
-    asj_multiply3_transposed(a->rotation, b->rotation, turn);
-    return asj_rotation_angle(turn) < SAME_MOTION && asj_dot3(a->translation, b->translation) > cos(SAME_MOTION);
+    return a->kind == ASJ_GEOMETRY_ESSENTIAL && b->kind == ASJ_GEOMETRY_ESSENTIAL && asj_motions_apart(a, b) < SAME_MOTION;
 }
 
 /* Of the same motion the one that has been followed is the answer. */

@@ -2,11 +2,10 @@
 /* Two geometries of a wall of tiles, of which the second is shifted: when that is a rival (a partner within 8 px is no other one),
  * and whether what the tiles look like says which one is wrong, or that one is. */
 #include "unit_test.h"
+#include "estimation_fixture.h"
 
 #include "geometry/ambiguity.h"
 #include "geometry/contradiction.h"
-#include "geometry/estimation.h"
-#include "geometry/pairs.h"
 #include "geometry/strike_out.h"
 
 #define TILE 40
@@ -51,41 +50,14 @@ static asj_model shifted_by(double shift)
 static asj_estimation *prepare(asj_context *context, double shift, asj_geometry_options *options)
 {
     asj_geometry_candidate list[2 * PLACES];
-    asj_estimation *e = asj_allocate_zero(&context->memory, 1, sizeof *e);
-    assert_non_null(e);
     asj_geometry_options_init(options);
     options->widths[0] = options->widths[1] = WIDTH;
     options->heights[0] = options->heights[1] = HEIGHT;
     make_candidates(shift, list);
-    e->context = context;
-    e->options = options;
-    e->focal_at = -1;
-    assert_int_equal(asj_pairs_create(context, list, 2 * PLACES, NULL, options, &e->set), ASJ_OK);
-    assert_true(asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch));
-    e->first.probability = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->first.probability);
-    e->other.probability = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->other.probability);
-    e->elsewhere = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->elsewhere);
-    e->vote = asj_allocate(&context->memory, 2 * PLACES, 4 * sizeof *e->vote);
-    assert_true(e->first.probability && e->other.probability && e->elsewhere && e->vote);
+    asj_estimation *e = create_estimation(context, list, 2 * PLACES, options);
     e->finalists[e->count++] = shifted_by(0);
     e->finalists[e->count++] = shifted_by(shift);
     return e;
-}
-
-static asj_pyramid pyramids[2][ASJ_MOST_CHANNELS];
-
-static void release(asj_context *context, asj_estimation *e)
-{
-    for (int32_t k = 0; k < 2 * ASJ_MOST_CHANNELS; k++)
-        asj_pyramid_free(&context->memory, &pyramids[k / ASJ_MOST_CHANNELS][k % ASJ_MOST_CHANNELS]);
-    asj_pictures_free(&context->memory, e->pictures);
-    asj_adjust_scratch_free(&context->memory, &e->scratch);
-    asj_release(&context->memory, e->first.probability);
-    asj_release(&context->memory, e->other.probability);
-    asj_release(&context->memory, e->elsewhere);
-    asj_release(&context->memory, e->vote);
-    asj_pairs_free(&context->memory, &e->set);
-    asj_release(&context->memory, e);
 }
 
 static void test_partner_within_eight_pixels_is_no_other_one(void **state)
@@ -103,7 +75,7 @@ static void test_partner_within_eight_pixels_is_no_other_one(void **state)
         assert_int_equal(doubt, 0);
         if (cases[k].rival >= 0)
             assert_true(asj_is_ambiguous(e, 0, cases[k].rival, doubt, PLACES));
-        release(context, e);
+        release_estimation(context, e);
     }
 }
 
@@ -128,7 +100,7 @@ static void test_sure_rival_makes_ambiguous(void **state)
             before = nfa;
         }
         assert_true(before < ASJ_SURE_RIVAL && before < 0.4 * of_best);
-        release(context, e);
+        release_estimation(context, e);
     }
 }
 
@@ -175,7 +147,7 @@ static void ask(asj_context *context, int32_t channels, const int32_t *contrasts
         int32_t doubt;
         rivals[best] = asj_strongest_rival(e, best, &doubt);
     }
-    release(context, e);
+    release_estimation(context, e);
 }
 
 static void test_pictures_tell_tiles_from_others(void **state)
@@ -224,7 +196,7 @@ static void test_wrong_one_is_struck_out(void **state)
         assert_int_equal(e->finalists[0].struck, ASJ_NOT_STRUCK);
         assert_int_equal(e->finalists[1].struck, cases[k].struck);
         assert_true(e->finalists[0].evidence == 100 && e->finalists[1].evidence == cases[k].evidence);
-        release(context, e);
+        release_estimation(context, e);
     }
 }
 
@@ -248,7 +220,7 @@ static void test_wrong_one_alone_is_struck_out(void **state)
                       asj_told_agreement(e, &e->finalists[0]).share);
         assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), cases[k].stays ? 0 : -1);
         assert_int_equal(e->finalists[0].struck, cases[k].stays ? ASJ_NOT_STRUCK : ASJ_STRUCK_BY_PICTURES);
-        release(context, e);
+        release_estimation(context, e);
     }
 }
 
@@ -277,7 +249,7 @@ static void test_agreement_is_unusual(void **state)
         assert_int_equal(asj_estimation_counts(e, 0), asj_estimation_log10_nfa(e, &e->finalists[0]) <= -4);
     }
     assert_false(asj_estimation_counts(e, -1));
-    release(context, e);
+    release_estimation(context, e);
 }
 
 int main(void)

@@ -4,12 +4,11 @@
  * A wall in front of both cameras, which are one tile apart. Its upper half is matched as it is. Its lower half, half of which
  * repeats every four tiles, is matched four tiles beside that, as if the camera had moved three tiles the other way. */
 #include "unit_test.h"
+#include "estimation_fixture.h"
 
 #include "core/angle.h"
 #include "geometry/ambiguity.h"
 #include "geometry/contradiction.h"
-#include "geometry/estimation.h"
-#include "geometry/pairs.h"
 #include "geometry/strike_out.h"
 
 #define TILE 40
@@ -26,7 +25,6 @@
 enum { RIGHT_ONE, WRONG_ONE, TWIN };
 
 static const asj_camera camera = {FOCAL, FOCAL, 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
-static asj_pyramid pyramids[2][ASJ_MOST_CHANNELS];
 
 static void make_candidates(asj_geometry_candidate list[PLACES])
 {
@@ -102,8 +100,6 @@ static void show(asj_context *context, asj_estimation *e, int32_t channels, int3
 static asj_estimation *prepare(asj_context *context, int32_t channels, int32_t contrast, asj_geometry_options *options)
 {
     asj_geometry_candidate list[PLACES];
-    asj_estimation *e = asj_allocate_zero(&context->memory, 1, sizeof *e);
-    assert_non_null(e);
     asj_geometry_options_init(options);
     for (int32_t v = 0; v < 2; v++) {
         options->widths[v] = WIDTH;
@@ -111,35 +107,12 @@ static asj_estimation *prepare(asj_context *context, int32_t channels, int32_t c
         options->cameras[v] = camera;
     }
     make_candidates(list);
-    e->context = context;
-    e->options = options;
-    e->focal_at = -1;
-    assert_int_equal(asj_pairs_create(context, list, PLACES, NULL, options, &e->set), ASJ_OK);
-    assert_true(asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch));
-    e->first.probability = asj_allocate(&context->memory, PLACES, sizeof *e->first.probability);
-    e->other.probability = asj_allocate(&context->memory, PLACES, sizeof *e->other.probability);
-    e->elsewhere = asj_allocate(&context->memory, PLACES, sizeof *e->elsewhere);
-    e->vote = asj_allocate(&context->memory, PLACES, 4 * sizeof *e->vote);
-    assert_true(e->first.probability && e->other.probability && e->elsewhere && e->vote);
+    asj_estimation *e = create_estimation(context, list, PLACES, options);
     e->finalists[RIGHT_ONE] = moved_by(1, 120);
     e->finalists[WRONG_ONE] = moved_by(1 - PERIOD, 130);
     e->count = 2;
     show(context, e, channels, contrast);
     return e;
-}
-
-static void release(asj_context *context, asj_estimation *e)
-{
-    for (int32_t k = 0; k < 2 * ASJ_MOST_CHANNELS; k++)
-        asj_pyramid_free(&context->memory, &pyramids[k / ASJ_MOST_CHANNELS][k % ASJ_MOST_CHANNELS]);
-    asj_pictures_free(&context->memory, e->pictures);
-    asj_adjust_scratch_free(&context->memory, &e->scratch);
-    asj_release(&context->memory, e->first.probability);
-    asj_release(&context->memory, e->other.probability);
-    asj_release(&context->memory, e->elsewhere);
-    asj_release(&context->memory, e->vote);
-    asj_pairs_free(&context->memory, &e->set);
-    asj_release(&context->memory, e);
 }
 
 static asj_comparison compare(asj_estimation *e, int32_t first, int32_t other)
@@ -170,7 +143,7 @@ static void test_pictures_prefer_the_right_motion(void **state)
         assert_int_equal(asj_strongest_rival(e, RIGHT_ONE, &doubt), -1);
         const asj_comparison from_right = compare(e, RIGHT_ONE, WRONG_ONE);
         assert_true(from_right.preference == -from_wrong.preference);
-        release(context, e);
+        release_estimation(context, e);
     }
 }
 
@@ -188,7 +161,7 @@ static void test_only_motions_far_apart_exclude_each_other(void **state)
         e->finalists[WRONG_ONE].translation[1] = sin(turn);
         assert_int_equal(compare(e, WRONG_ONE, RIGHT_ONE).preference > 0, degrees > 15);
     }
-    release(context, e);
+    release_estimation(context, e);
 }
 
 /* What has less than half of the evidence is not preferred, whatever pictures say. */
@@ -201,7 +174,7 @@ static void test_much_evidence_is_not_outweighed(void **state)
     assert_true(compare(e, WRONG_ONE, RIGHT_ONE).preference > 0);
     e->finalists[WRONG_ONE].evidence = 241;
     assert_true(compare(e, WRONG_ONE, RIGHT_ONE).preference == 0);
-    release(context, e);
+    release_estimation(context, e);
 }
 
 /* The wrong one has a little more evidence, the right one is there twice: the one that is followed is the answer. */
@@ -218,7 +191,7 @@ static void test_preferred_motion_is_the_answer(void **state)
     assert_true(best == RIGHT_ONE || best == TWIN);
     assert_true(e->finalists[best].settled);
     assert_int_equal(e->finalists[WRONG_ONE].struck != ASJ_NOT_STRUCK, 1);
-    release(context, e);
+    release_estimation(context, e);
 }
 
 int main(void)
