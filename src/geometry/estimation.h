@@ -9,8 +9,9 @@
 #include "search.h"
 
 #define ASJ_MOST_KINDS 3
+#define ASJ_TILED 4 /* tiled_motions.c */
 /* The last three: with a focal length that was found. One: a camera that only turns. */
-#define ASJ_MOST_MODELS ((2 * ASJ_MOST_KINDS + 3) * ASJ_FINALISTS + 1)
+#define ASJ_MOST_MODELS ((2 * ASJ_MOST_KINDS + 3) * ASJ_FINALISTS + 1 + ASJ_TILED)
 
 /* One of two geometries that are compared (contradiction.h). */
 typedef struct asj_compared {

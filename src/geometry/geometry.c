@@ -7,6 +7,7 @@
  *   pure_rotation.c  a camera that only turns
  *   focal.c       the same for a row of focal lengths (focal_prior.c, focal_profile.c), where none is known and it is asked for
  *   rivals.c      what explains as much without the candidates of the best one
+ *   tiled_motions.c  where a floor of tiles may have been matched with other tiles: motions that see these
  *   evidence.c    how often chance brings as much
  *   strike_out.c  what is contradicted (contradiction.c: by colour_vote.c, picture_vote.c, picture_agreement.c, upright.c)
  *   ambiguity.c   whether another one may be right as well
@@ -24,6 +25,7 @@
 #include "rivals.h"
 #include "stop.h"
 #include "strike_out.h"
+#include "tiled_motions.h"
 
 #include <math.h>
 #include <string.h>
@@ -196,6 +198,17 @@ static asj_status search_all(asj_estimation *e, const asj_geometry_hints *hints)
     return status == ASJ_OK && finds_focal ? search_focal(e, hints) : status;
 }
 
+/* `more` that stand behind the finalists become some of them. */
+static void add_finalists(asj_estimation *e, int32_t more)
+{
+    for (int32_t k = e->count; k < e->count + more; k++)
+        if (asj_has_found_focal(e, k)) {
+            e->finalists[k].evidence += e->focal.log_share;
+            e->finalists[k].peak += e->focal.log_share;
+        }
+    e->count += more;
+}
+
 /* Only what is about to be accepted needs them. */
 static asj_status search_rivals(asj_estimation *e)
 {
@@ -215,12 +228,18 @@ static asj_status search_rivals(asj_estimation *e)
         cameras = NULL;
     const asj_status status = asj_find_rivals(e->context, &e->set, kinds, kind_count, cameras, &e->finalists[best],
                                               e->finalists + e->count, &more);
-    for (int32_t k = e->count; k < e->count + more; k++)
-        if (asj_has_found_focal(e, k)) {
-            e->finalists[k].evidence += e->focal.log_share;
-            e->finalists[k].peak += e->focal.log_share;
-        }
-    e->count += more;
+    add_finalists(e, more);
+    return status;
+}
+
+static asj_status search_tiled_motions(asj_estimation *e)
+{
+    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
+    int32_t more = 0;
+    if (!asj_estimation_counts(e, best))
+        return ASJ_OK;
+    const asj_status status = asj_find_tiled_motions(e, best, e->finalists + e->count, &more);
+    add_finalists(e, more);
     return status;
 }
 
@@ -275,6 +294,8 @@ static asj_status search(asj_estimation *e, const asj_geometry_hints *hints)
         status = search_all(e, hints);
     if (status == ASJ_OK)
         status = search_rivals(e);
+    if (status == ASJ_OK)
+        status = search_tiled_motions(e);
     if (status == ASJ_OK)
         status = asj_strike_out(e);
     return status == ASJ_OK ? asj_watch_end(e->set.watch) : status;
