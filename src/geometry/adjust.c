@@ -13,8 +13,6 @@
 
 #define WIDE 3.0
 #define LIKE_ROUNDS 2
-#define HELD_LIKE_ROUNDS 8
-#define HELD_ROUNDS 4
 #define TAIL 6.0
 #define BEHIND 2.0
 #define LEAST 1e-3 /* probability below which a candidate is left out */
@@ -156,6 +154,11 @@ int32_t asj_adjust_once(const asj_pairs *set, asj_model *model, const double *pr
     return step(set, model, probability, 1, FREE);
 }
 
+int32_t asj_adjust_held(const asj_pairs *set, asj_model *model, const double *probability, double loose)
+{
+    return step(set, model, probability, loose, HELD);
+}
+
 double asj_choose_motion(const asj_pairs *set, const double *probability, asj_model *model)
 {
     double essential[9], rotations[2][9], t[3], best = -HUGE_VAL;
@@ -210,20 +213,6 @@ void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *li
             break;
     }
     model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);
-}
-
-void asj_adjust_around_rotation(const asj_pairs *set, asj_model *model, const asj_model *like, asj_adjust_scratch *scratch)
-{
-    asj_probabilities(set, &like->view, 1, &scratch->score, scratch->probability);
-    for (int32_t round = 0; round < HELD_LIKE_ROUNDS; round++)
-        if (!step(set, model, scratch->probability, WIDE, HELD))
-            return;
-    for (int32_t round = 0; round < HELD_ROUNDS; round++) {
-        const double loose = WIDE + (1 - WIDE) * round / (HELD_ROUNDS - 1);
-        asj_probabilities(set, &model->view, loose, &scratch->score, scratch->probability);
-        if (!step(set, model, scratch->probability, loose, HELD))
-            return;
-    }
 }
 
 void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)

@@ -36,12 +36,11 @@ void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adju
 /* One round of it with the probabilities of all candidates; 0, and the model stays, when its equations cannot be solved. */
 int32_t asj_adjust_once(const asj_pairs *set, asj_model *model, const double *probability);
 
+/* The same of an essential matrix whose rotation stays, with standard deviations times `loose`. */
+int32_t asj_adjust_held(const asj_pairs *set, asj_model *model, const double *probability, double loose);
+
 /* The same for a model that should explain the candidates that `like` does, and may still be some way off. */
 void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *like, int32_t rounds, asj_adjust_scratch *scratch);
-
-/* Translation and planes follow a rotation that is given, which stays: with the candidates that `like` explains, then with its own.
- * The model's score is not that of the result. */
-void asj_adjust_around_rotation(const asj_pairs *set, asj_model *model, const asj_model *like, asj_adjust_scratch *scratch);
 
 /* The normal matrix (information) of the model's parameters at the candidates' probabilities: parameters x parameters. */
 void asj_information(const asj_pairs *set, const asj_model *model, const double *probability, double *information);

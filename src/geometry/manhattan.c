@@ -146,7 +146,8 @@ int32_t asj_manhattan_rotations(asj_memory *memory, const asj_directions_list di
     return set->rotations != NULL;
 }
 
-int32_t asj_rotation_is_near(const asj_pairs *set, int32_t k, const double rotation[9], double w[3])
+/* w with exp([w]x) R = the k-th of set->rotations; 0 when that is too far away to count. */
+static int32_t is_near(const asj_pairs *set, int32_t k, const double rotation[9], double w[3])
 {
     const double *m = set->rotations[k].matrix;
     const double trace = asj_dot3(m, rotation) + asj_dot3(m + 3, rotation + 3) + asj_dot3(m + 6, rotation + 6);
@@ -176,7 +177,7 @@ int32_t asj_nearest_rotation(const asj_pairs *set, const double rotation[9], dou
     int32_t found = -1;
     for (int32_t k = 0; k < set->rotation_count; k++) {
         double at[3];
-        if (!asj_rotation_is_near(set, k, rotation, at))
+        if (!is_near(set, k, rotation, at))
             continue;
         const double part = part_of(&set->rotations[k], at);
         if (part <= best)
@@ -194,7 +195,7 @@ double asj_rotation_prior(const asj_pairs *set, const double rotation[9])
     if (set->rotation_count == 0)
         return 0;
     for (int32_t k = 0; k < set->rotation_count; k++)
-        if (asj_rotation_is_near(set, k, rotation, w))
+        if (is_near(set, k, rotation, w))
             sum += part_of(&set->rotations[k], w);
     return log(0.5 + 0.5 * sum);
 }

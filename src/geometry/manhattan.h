@@ -12,10 +12,7 @@ int32_t asj_manhattan_rotations(asj_memory *memory, const asj_directions_list di
 /* Directions that a caller gives (rows), as exact as those of images are; none when they are zero. */
 void asj_directions_given(const double directions[9], asj_directions_list *list);
 
-/* w with exp([w]x) R = the k-th of set->rotations; 0 when that is too far away to count. */
-int32_t asj_rotation_is_near(const asj_pairs *set, int32_t k, const double rotation[9], double w[3]);
-
-/* Which of set->rotations is the likeliest at R, and w as above; -1 when none is near enough to say anything. */
+/* Which of set->rotations is the likeliest at R, and w with exp([w]x) R = that one; -1 when none is near enough to say anything. */
 int32_t asj_nearest_rotation(const asj_pairs *set, const double rotation[9], double w[3]);
 
 /* Log of the density of rotations at R over the flat one; 0 without rotations. */

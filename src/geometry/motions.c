@@ -4,14 +4,16 @@
  * which of its tiles) the others decide. The best ASJ_SETTLED that lie apart become what the candidates allow around them
  * (posterior.c). */
 #include "motions.h"
+#include "around_rotation.h"
+#include "core/angle.h"
 #include "core/sort.h"
 #include "core/threads.h"
 #include "evidence.h"
-#include "manhattan.h"
 #include "other_motions.h"
 #include "planes.h"
 #include "posterior.h"
 #include "ranking.h"
+#include "small_matrix.h"
 #include "stop.h"
 
 #include <math.h>
@@ -22,6 +24,7 @@
 #define ROUNDS 5
 #define WITH_PLANES 4
 #define UNLIKELY 7.0 /* nats below the best one */
+#define BESIDE (8 * ASJ_DEGREE) /* likely rotations that are tried in place of a motion's own; what is farther is another motion */
 
 typedef struct motions {
     asj_model starts[MOST_STARTS], picked[ASJ_FINALISTS];
@@ -96,6 +99,13 @@ static asj_model snapped(const asj_pairs *set, const asj_model *model, int32_t k
     return m;
 }
 
+static int32_t is_beside(const double a[9], const double b[9])
+{
+    double turn[9];
+    asj_multiply3_transposed(a, b, turn);
+    return asj_rotation_angle(turn) < BESIDE;
+}
+
 static void snap_some(const void *data, const asj_part *part)
 {
     const job *j = data;
@@ -103,8 +113,7 @@ static void snap_some(const void *data, const asj_part *part)
         asj_model *model = &j->m->picked[n];
         const asj_model from = *model;
         for (int32_t k = 0; k < j->set->rotation_count && !asj_pairs_stop(j->set, part); k++) {
-            double w[3];
-            if (!asj_rotation_is_near(j->set, k, from.rotation, w))
+            if (!is_beside(j->set->rotations[k].matrix, from.rotation))
                 continue;
             const asj_model m = snapped(j->set, &from, k, &j->scratch[part->thread]);
             if (m.evidence > model->evidence)

@@ -4,6 +4,7 @@
  * candidates, count in full. */
 #include "unit_test.h"
 
+#include "geometry/around_rotation.h"
 #include "geometry/evidence.h"
 #include "geometry/manhattan.h"
 #include "geometry/motions.h"
