@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
 # What .editorconfig asks for, checked: tabs, blanks at the end of a line, characters beyond ASCII, lines over 132 columns, files
-# that do not end with a newline, files over 800 lines, two empty lines (but in Python); and what only the sed of GNU knows. Prints
-# every offence; exit code 1 when there is one.
+# that do not end with a newline, files over 800 lines, two empty lines (but in Python); what only the sed of GNU knows; and
+# vectors loaded as if an aligned float stood there, of whatever it is. Prints every offence; exit code 1 when there is one.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 export LC_ALL=C
@@ -17,6 +17,7 @@ files=$(find include src kernels cli tests scripts meson.build meson_options.txt
     grep -n '[^ -~]' $files | grep -v "$tab" | sed 's/$/  <- not ASCII/'
     grep -nE '^.{133,}' $files | sed 's/$/  <- over 132 columns/'
     grep -nE '[s]ed .*[\][(].*[\][|]' $files | sed 's/$/  <- alternatives, which only the sed of GNU knows/'
+    grep -nE '_mm_load1?_(s[sd]|p[sd]1?)[(]' $files | grep -v '^scripts/' | sed 's/$/  <- reads an aligned float: memcpy()/'
     awk 'FNR == 1 { empty = 0 }
          !/./ { if (empty && FILENAME !~ /[.]py$/) print FILENAME ":" FNR "  <- two empty lines"; empty = 1; next }
          { empty = 0 }

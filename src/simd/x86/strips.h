@@ -7,6 +7,8 @@
 
 #include <immintrin.h>
 
+#include <string.h>
+
 static inline double total_of_four(__m256d v)
 {
     const __m128d two = _mm_add_pd(_mm256_castpd256_pd128(v), _mm256_extractf128_pd(v, 1));
@@ -19,8 +21,11 @@ static inline __m256d four(const int16_t *p, const int apart, ptrdiff_t step)
     if (!apart)
         return _mm256_cvtepi32_pd(_mm_cvtepi16_epi32(_mm_loadl_epi64((const __m128i *)(const void *)p)));
     __m128i two[4];
-    for (int i = 0; i < 4; i++)
-        two[i] = _mm_castps_si128(_mm_load_ss((const float *)(const void *)(p + i * step)));
+    for (int i = 0; i < 4; i++) {
+        int32_t pair;
+        memcpy(&pair, p + i * step, sizeof pair);
+        two[i] = _mm_cvtsi32_si128(pair);
+    }
     const __m128i words = _mm_unpacklo_epi32(_mm_unpacklo_epi16(two[0], two[1]), _mm_unpacklo_epi16(two[2], two[3]));
     return _mm256_cvtepi32_pd(_mm_cvtepi16_epi32(words));
 }
