@@ -37,7 +37,8 @@ typedef struct asj_image_file {
     int32_t orientation; /* the EXIF orientation (1 .. 8) that was applied: the view is upright. 1 = none */
     int32_t focal_source;/* ASJ_EXIF_FOCAL_... */
     float focal_length;  /* px of `image`, from EXIF data; 0 = not known */
-    int32_t has_more;    /* 1 = the file holds further pictures, which are not read: pages of a TIFF, frames of a PNG */
+    int32_t has_more;    /* 1 = the file holds further pictures, which are not read: pages of a TIFF, frames of a PNG, views of a
+                          * JPEG (MPO), pictures one after the other of a PNM */
 } asj_image_file;
 
 /* Reads an image: PNG (1 to 16 bits, palette, alpha, interlaced) and PNM (PBM, PGM, PPM, PAM, PFM) always; JPEG, TIFF, WebP, JPEG

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* EXIF 2.3 section 4.6.2 (TIFF structure) and 4.6.4 A (Orientation). */
+/* EXIF 2.3 section 4.6.2 (TIFF structure) and 4.6.4 A (Orientation); CIPA DC-007 section 5.2 (index of multi-picture files). */
 #include "exif.h"
 
 #include <string.h>
 
 #define TAG_ORIENTATION 0x0112u
+#define TAG_MPF_ENTRIES 0xb002u
 #define TYPE_SHORT 3u
 #define TYPE_LONG 4u
 #define TYPE_LONG8 16u
@@ -62,8 +63,8 @@ static int32_t read_entry(const tiff_bytes *tiff, size_t entry, uint32_t *value)
     return 0;
 }
 
-/* A tag's first entry in the first directory, if it is one number that fits there. */
-static int32_t find_value(const tiff_bytes *tiff, unsigned tag, uint32_t *value)
+/* Where a tag's first entry in the first directory stands; 0 when there is none. */
+static size_t find_entry(const tiff_bytes *tiff, unsigned tag)
 {
     size_t word = tiff->is_big ? 8 : 4, head = tiff->is_big ? 8 : 2, entry_size = 4 + 2 * word, entry;
     uint64_t directory, count, i;
@@ -76,7 +77,7 @@ static int32_t find_value(const tiff_bytes *tiff, unsigned tag, uint32_t *value)
     count = tiff->is_big ? get64(tiff, (size_t)directory) : get16(tiff, (size_t)directory);
     for (i = 0, entry = (size_t)directory + head; i < count && entry_size <= tiff->size - entry; i++, entry += entry_size)
         if (get16(tiff, entry) == tag)
-            return read_entry(tiff, entry, value);
+            return entry;
     return 0;
 }
 
@@ -96,14 +97,29 @@ static tiff_bytes open_tiff(const unsigned char *block, size_t size)
 
 int32_t asj_tiff_value(const unsigned char *block, size_t size, unsigned tag, uint32_t *value)
 {
-    tiff_bytes tiff = open_tiff(block, size);
-    return find_value(&tiff, tag, value);
+    const tiff_bytes tiff = open_tiff(block, size);
+    const size_t entry = find_entry(&tiff, tag);
+    return entry && read_entry(&tiff, entry, value);
 }
 
 int32_t asj_exif_orientation(const unsigned char *block, size_t size)
 {
     uint32_t value;
     return asj_tiff_value(block, size, TAG_ORIENTATION, &value) && value >= 1 && value <= 8 ? (int32_t)value : 1;
+}
+
+int32_t asj_mpf_has_views(const unsigned char *block, size_t size)
+{
+    enum { ENTRY = 16, KIND = 0xff0000, VIEWS = 0x020000 }; /* bytes of a picture's entry, which begins with its kind */
+    const tiff_bytes tiff = open_tiff(block, size);
+    const size_t entry = find_entry(&tiff, TAG_MPF_ENTRIES);
+    if (!entry || tiff.is_big)
+        return 0;
+    const size_t bytes = get32(&tiff, entry + 4), first = get32(&tiff, entry + 8);
+    for (size_t at = ENTRY; at + ENTRY <= bytes && first <= size && at + ENTRY <= size - first; at += ENTRY)
+        if ((get32(&tiff, first + at) & KIND) == VIEWS)
+            return 1;
+    return 0;
 }
 
 void asj_turn_upright(unsigned char *copy, const unsigned char *pixels, ptrdiff_t stride, int32_t width, int32_t height,

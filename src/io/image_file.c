@@ -60,6 +60,7 @@ static asj_status decode(const asj_input *input, uint64_t max_pixels, asj_image_
     if (!probe.has_size && probe.kind != ASJ_KIND_PNG)
         return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s: its header does not tell its size", probe.name);
     buffer->orientation = probe.orientation;
+    buffer->has_more = probe.has_more;
     status = decoder(input, &probe, max_pixels, buffer, message);
 #ifdef ASJ_IO_HAVE_EXIF
     if (status == ASJ_OK && probe.exif)

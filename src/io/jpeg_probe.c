@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum { MARKER_TEM = 0x01, MARKER_DHT = 0xc4, MARKER_JPG = 0xc8, MARKER_DAC = 0xcc, MARKER_RST0 = 0xd0, MARKER_RST7 = 0xd7,
-       MARKER_EOI = 0xd9, MARKER_SOS = 0xda, MARKER_APP1 = 0xe1 };
+       MARKER_EOI = 0xd9, MARKER_SOS = 0xda, MARKER_APP1 = 0xe1, MARKER_APP2 = 0xe2 };
 
 static int is_restart(int marker)
 {
@@ -48,6 +48,8 @@ static void read_segment(int marker, const unsigned char *content, size_t length
         probe->exif_size = length - 6;
         probe->orientation = asj_exif_orientation(probe->exif, probe->exif_size);
     }
+    if (marker == MARKER_APP2 && length > 4 && !memcmp(content, "MPF\0", 4))
+        probe->has_more |= asj_mpf_has_views(content + 4, length - 4);
 }
 
 void asj_probe_jpeg(const asj_input *input, asj_image_probe *probe)

@@ -2,7 +2,7 @@
 /* Headers are text: numbers between blanks and comments. The probe and the reader share this parser. */
 #include "pnm_header.h"
 
-#include "probe.h"
+#include "image_probe.h"
 
 #include <string.h>
 
@@ -126,6 +126,13 @@ static uint64_t pixel_bytes(const asj_pnm_header *header)
     return header->most == 0 ? 4 * count : header->most > 255 ? 2 * count : count;
 }
 
+/* Pictures may follow each other without anything in between, but after one in text. */
+static int begins_a_picture(const asj_input *input, size_t at)
+{
+    const asj_input rest = {input->bytes + at, input->size - at};
+    return asj_probe_kind(&rest) == ASJ_KIND_PNM;
+}
+
 void asj_probe_pnm(const asj_input *input, asj_image_probe *probe)
 {
     asj_pnm_header header;
@@ -135,6 +142,9 @@ void asj_probe_pnm(const asj_input *input, asj_image_probe *probe)
     probe->height = header.height;
     if (!probe->has_size)
         probe->fault = "its header makes no sense";
-    else if (header.width && header.height)
-        probe->is_truncated = pixel_bytes(&header) > input->size - header.pixels;
+    else if (header.width && header.height) {
+        const uint64_t bytes = pixel_bytes(&header), left = input->size - header.pixels;
+        probe->is_truncated = bytes > left;
+        probe->has_more = !header.is_text && bytes < left && begins_a_picture(input, header.pixels + (size_t)bytes);
+    }
 }

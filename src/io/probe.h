@@ -29,6 +29,7 @@ typedef struct asj_image_probe {
     const unsigned char *exif; /* JPEG, WebP: the EXIF block in the file's bytes, or NULL */
     size_t exif_size;
     int32_t is_truncated;   /* the file ends before the image does */
+    int32_t has_more;       /* JPEG, PNM: asj_image_file */
     const char *fault;      /* what else is wrong with the file's structure, or NULL */
     size_t codestream;      /* JPEG 2000: where it begins */
     int32_t is_ycc;         /* JPEG 2000: the file says that its colours are sYCC */

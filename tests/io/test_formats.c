@@ -21,6 +21,18 @@ static const unsigned char jpeg_tail[] = {
     0xd9};
 static const int jpeg_levels[2][3] = {{120, 200, 200}, {30, 0, 0}};
 
+static void append16(test_bytes *to, int big_endian, unsigned value)
+{
+    unsigned char bytes[2] = {(unsigned char)(big_endian ? value >> 8 : value), (unsigned char)(big_endian ? value : value >> 8)};
+    append(to, bytes, 2);
+}
+
+static void append32(test_bytes *to, int big_endian, uint32_t value)
+{
+    append16(to, big_endian, big_endian ? value >> 16 : value & 0xffff);
+    append16(to, big_endian, big_endian ? value & 0xffff : value >> 16);
+}
+
 static void append_exif(test_bytes *jpeg, const test_bytes *exif)
 {
     const unsigned char length[2] = {(unsigned char)((exif->size + 8) >> 8), (unsigned char)(exif->size + 8)};
@@ -107,6 +119,71 @@ static void the_first_exif_block_counts(void **state)
     assert_int_equal(file->orientation, 6);
     check_jpeg(file);
     asj_image_file_free(&file);
+}
+
+/* A JPEG whose index says what kind of picture a second one is; the index may be too short for it, or BigTIFF (43). */
+static void views_behind_the_first_are_told(void **state)
+{
+    static const struct {
+        uint32_t kind;
+        size_t kept;
+        unsigned magic;
+        int has_more;
+    } given[] = {{0x020002, 58, 42, 1}, {0x020001, 58, 42, 1}, {0x80020003, 58, 42, 1}, {0x010001, 58, 42, 0}, {0, 58, 42, 0},
+                 {0x030000, 58, 42, 0}, {0x020002, 57, 42, 0}, {0x020002, 26, 42, 0}, {0x020002, 10, 42, 0}, {0x020002, 58, 43, 0}};
+    static test_bytes plain, index, whole;
+    (void)state;
+    make_jpeg(&plain, NULL, NULL);
+    for (size_t i = 0; i < 2 * sizeof given / sizeof given[0]; i++) {
+        const int big_endian = i & 1;
+        index.size = 0;
+        append(&index, "MPF\0", 4);
+        append(&index, big_endian ? "MM" : "II", 2);
+        append16(&index, big_endian, given[i / 2].magic);
+        append32(&index, big_endian, 8); /* the directory: one entry of 32 bytes behind it */
+        append16(&index, big_endian, 1);
+        append16(&index, big_endian, 0xb002);
+        append16(&index, big_endian, 7);
+        append32(&index, big_endian, 32);
+        append32(&index, big_endian, 26);
+        append32(&index, big_endian, 0);
+        const uint32_t entries[8] = {0x20030000, 100, 0, 0, given[i / 2].kind, 100, 100, 0};
+        for (size_t n = 0; n < 8; n++)
+            append32(&index, big_endian, entries[n]);
+        index.size = 4 + given[i / 2].kept;
+        whole.size = 0;
+        append(&whole, plain.bytes, 2);
+        append(&whole, "\xff\xe2", 2);
+        append16(&whole, 1, (unsigned)index.size + 2);
+        append(&whole, index.bytes, index.size);
+        append(&whole, plain.bytes + 2, plain.size - 2);
+        asj_image_file *file = read_image("views.jpg", &whole);
+        assert_int_equal(file->has_more, given[i / 2].has_more);
+        check_jpeg(file);
+        asj_image_file_free(&file);
+    }
+}
+
+static void pictures_of_a_pnm_behind_the_first_are_told(void **state)
+{
+    static const struct {
+        const char *behind;
+        int has_more;
+    } given[] = {{"", 0}, {"\n", 0}, {"P5", 0}, {"P8 1", 0}, {"junk", 0}, {"P5 1 1 255 a", 1}, {"P7\nWIDTH 1", 1}, {"Pf 1", 1}};
+    static const char *const first[] = {"P5 1 1 255\na", "P6\n1 1 65535\nabcdef", "P4 1 1\na", "Pf\n1 1\n-1.0\n\0\0\0\0",
+                                        "P2 1 1 255 3 "};
+    static const size_t sizes[] = {12, 19, 8, 16, 13};
+    static test_bytes pnm;
+    (void)state;
+    for (size_t f = 0; f < sizeof sizes / sizeof sizes[0]; f++)
+        for (size_t i = 0; i < sizeof given / sizeof given[0]; i++) {
+            pnm.size = 0;
+            append(&pnm, first[f], sizes[f]);
+            append(&pnm, given[i].behind, strlen(given[i].behind));
+            asj_image_file *file = read_image("pictures.pnm", &pnm);
+            assert_int_equal(file->has_more, given[i].has_more && f < 4); /* text has no second picture */
+            asj_image_file_free(&file);
+        }
 }
 
 /* Standard error into a file of the folder while a test runs; how much arrived. */
@@ -218,18 +295,6 @@ static void pfm_floats(void **state)
     assert_int_equal(file->image.format, ASJ_FORMAT_GRAY_FLOAT);
     assert_true(((const float *)file->image.data)[0] == (77.0f * 1.0f + 150.0f * 0.5f + 29.0f * 0.25f) / 256.0f);
     asj_image_file_free(&file);
-}
-
-static void append16(test_bytes *to, int big_endian, unsigned value)
-{
-    unsigned char bytes[2] = {(unsigned char)(big_endian ? value >> 8 : value), (unsigned char)(big_endian ? value : value >> 8)};
-    append(to, bytes, 2);
-}
-
-static void append32(test_bytes *to, int big_endian, uint32_t value)
-{
-    append16(to, big_endian, big_endian ? value >> 16 : value & 0xffff);
-    append16(to, big_endian, big_endian ? value & 0xffff : value >> 16);
 }
 
 /* An uncompressed gray TIFF of the test picture, 5 x 3. */
@@ -602,6 +667,8 @@ int main(void)
     const struct CMUnitTest jpeg[] = {
         cmocka_unit_test(jpeg_pixels_and_orientation),
         cmocka_unit_test(the_first_exif_block_counts),
+        cmocka_unit_test(views_behind_the_first_are_told),
+        cmocka_unit_test(pictures_of_a_pnm_behind_the_first_are_told),
         cmocka_unit_test(jpeg_cut_at_every_length),
         cmocka_unit_test(jpeg_with_too_few_or_too_many_data),
         cmocka_unit_test(damage_is_seen_without_descriptors),
