@@ -3,7 +3,8 @@
  * is one refused file when it has a process of its own.
  *
  * The bytes of the file go to the program over a socket, then its answer (decoder_answer.h) comes back. No file of this process but
- * that socket is open there, and standard error is not. */
+ * that socket is open there, and standard error is not: where the system can close the others (the C library of GNU from 2.34 on,
+ * FreeBSD, macOS); elsewhere those that have FD_CLOEXEC. */
 #define _GNU_SOURCE
 #include "decoder_answer.h"
 #include "decoder_process.h"
@@ -25,6 +26,11 @@
 /* How long a program that says nothing is waited for: its own limit is one of processor time, a second and another one for each
  * megapixel (heif_program.c), and the machine may be busy. */
 enum { PATIENCE_MS = 60000, PATIENCE_PIXELS = 250, MOST_PATH = 4096 }; /* and a millisecond for so many pixels */
+
+/* Linux and the BSDs say with a call what macOS says of a socket (open_sockets()). */
+#ifndef MSG_NOSIGNAL
+#define MSG_NOSIGNAL 0
+#endif
 
 /* The program's end of the talk. */
 typedef struct talk {
@@ -55,13 +61,42 @@ static int find_program(char *path, const char *program)
     return is_there(path, ASJ_IO_PROGRAMS "/", sizeof ASJ_IO_PROGRAMS, program);
 }
 
-/* 0, or errno. The program's standard input and output are `socket`. */
+/* What the program has: `socket` as standard input and output, and nowhere to complain to. 0, or errno. */
+static int choose_files(posix_spawn_file_actions_t *files, int socket)
+{
+    int error = posix_spawn_file_actions_adddup2(files, socket, STDIN_FILENO);
+    if (!error)
+        error = posix_spawn_file_actions_adddup2(files, socket, STDOUT_FILENO);
+    if (!error)
+        error = posix_spawn_file_actions_addopen(files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+#ifdef ASJ_IO_HAVE_CLOSEFROM
+    if (!error)
+        error = posix_spawn_file_actions_addclosefrom_np(files, STDERR_FILENO + 1);
+#endif
+    return error;
+}
+
+/* Signals as a program expects them. */
+static void choose_attributes(posix_spawnattr_t *attributes)
+{
+    short flags = POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK;
+    sigset_t signals;
+    sigfillset(&signals);
+    posix_spawnattr_setsigdefault(attributes, &signals);
+    sigemptyset(&signals);
+    posix_spawnattr_setsigmask(attributes, &signals);
+#ifdef POSIX_SPAWN_CLOEXEC_DEFAULT
+    flags |= POSIX_SPAWN_CLOEXEC_DEFAULT; /* macOS: no file but those of choose_files() */
+#endif
+    posix_spawnattr_setflags(attributes, flags);
+}
+
+/* 0, or errno. */
 static int start(const char *path, const char *program, int socket, const char *pixels, pid_t *process)
 {
     char *arguments[3] = {(char *)(size_t)program, (char *)(size_t)pixels, NULL}, *environment[1] = {NULL};
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
-    sigset_t signals;
     int error;
 
     if (posix_spawn_file_actions_init(&files))
@@ -70,16 +105,8 @@ static int start(const char *path, const char *program, int socket, const char *
         posix_spawn_file_actions_destroy(&files);
         return ENOMEM;
     }
-    sigfillset(&signals);
-    posix_spawnattr_setsigdefault(&attributes, &signals);
-    sigemptyset(&signals);
-    posix_spawnattr_setsigmask(&attributes, &signals);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-    error = posix_spawn_file_actions_adddup2(&files, socket, STDIN_FILENO);
-    if (!error)
-        error = posix_spawn_file_actions_adddup2(&files, socket, STDOUT_FILENO);
-    if (!error)
-        error = posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    choose_attributes(&attributes);
+    error = choose_files(&files, socket);
     if (!error)
         error = posix_spawn(process, path, &files, &attributes, arguments, environment);
     posix_spawnattr_destroy(&attributes);
@@ -171,12 +198,23 @@ static asj_status receive(const talk *with, const asj_image_probe *probe, uint64
     return status;
 }
 
-/* Two ends of a socket that no other program inherits. */
+/* Two ends of a socket that no other program inherits. 0, or errno. */
 static int open_sockets(int ends[2])
 {
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends))
+#ifdef SOCK_CLOEXEC
+    return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) ? errno : 0;
+#else
+    if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends))
         return errno;
+    for (int end = 0; end < 2; end++) {
+        fcntl(ends[end], F_SETFD, FD_CLOEXEC);
+#ifdef SO_NOSIGPIPE
+        const int on = 1;
+        setsockopt(ends[end], SOL_SOCKET, SO_NOSIGPIPE, &on, sizeof on);
+#endif
+    }
     return 0;
+#endif
 }
 
 asj_status asj_decode_elsewhere(const char *program, const asj_input *input, const asj_image_probe *probe, uint64_t max_pixels,
