@@ -121,16 +121,24 @@ static void list_options(const cli_syntax *syntax)
         }
 }
 
+/* Options may be cut as getopt_long() takes them: down to what no other option begins with. */
+static int has_option(int argc, char **argv, const char *name, size_t least)
+{
+    for (int i = 1; i < argc; i++) {
+        const size_t length = strlen(argv[i]);
+        if (length >= least && strncmp(argv[i], name, length) == 0)
+            return 1;
+    }
+    return 0;
+}
+
 void cli_help(const cli_syntax *syntax, int argc, char **argv)
 {
-    int advanced = 0;
-    for (int i = 1; i < argc; i++)
-        if (strcmp(argv[i], "--list-options") == 0) {
-            list_options(syntax);
-            return;
-        }
-    for (int i = 1; i < argc; i++)
-        advanced |= strcmp(argv[i], "--advanced") == 0;
+    if (has_option(argc, argv, "--list-options", sizeof "--lis" - 1)) {
+        list_options(syntax);
+        return;
+    }
+    const int advanced = has_option(argc, argv, "--advanced", sizeof "--ad" - 1);
     fputs(syntax->introduction, stdout);
     for (size_t g = 0; g < syntax->group_count; g++) {
         printf("\n%s\n", syntax->groups[g].title);

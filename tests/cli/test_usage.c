@@ -58,6 +58,9 @@ static void help_names_the_options_of_the_library(void **state)
     expect_in(result, result->out, "options more with --help --advanced");
     expect_help(run_cli("detect", "--help", "--advanced", NULL), 1);
     expect_help(run_cli("detect", "--advanced", "-h", NULL), 1);
+    expect_help(run_cli("detect", "--help", "--ad", NULL), 1);
+    expect_help(run_cli("detect", "--adv", "--hel", NULL), 1);
+    expect_help(run_cli("detect", "--help", "--a", NULL), 0); /* --arc-half-width, too */
 }
 
 static void expect_same_help(const char *const *one, const char *const *other)
