@@ -15,7 +15,7 @@ typedef struct asj_cl_source {
 
 typedef struct asj_cl_kernel_name {
     const char *name;
-    int32_t source;
+    int32_t source; /* its place in asj_cl_sources */
 } asj_cl_kernel_name;
 
 extern const asj_cl_source asj_cl_sources[];

@@ -125,19 +125,18 @@ static void find_variances(const samples *in, const moments *m, int32_t side, li
     out->b_variance = ANGLE_CORRELATION * variance * m->w / determinant + 2 * LEAST_ERROR * LEAST_ERROR / (span * span);
 }
 
-/* Between the lines of both signs when they are no more than THIN apart all along: 1, and how far they are. */
-static int thin(const line lines[2], double first, double last, line *middle, double *apart)
+/* When the lines of both signs are no more than THIN apart all along: the line between them, and how far apart they are. */
+static void take_middle(const line lines[2], double first, double last, line *middle, double *apart)
 {
     const double near = fabs(lines[1].a - lines[0].a + (lines[1].b - lines[0].b) * first);
     const double far = fabs(lines[1].a - lines[0].a + (lines[1].b - lines[0].b) * last);
     if (near > THIN || far > THIN)
-        return 0;
+        return;
     *apart = 0.5 * (near + far);
     middle->a = 0.5 * (lines[0].a + lines[1].a);
     middle->b = 0.5 * (lines[0].b + lines[1].b);
     middle->a_variance = 0.25 * (lines[0].a_variance + lines[1].a_variance);
     middle->b_variance = 0.25 * (lines[0].b_variance + lines[1].b_variance);
-    return 1;
 }
 
 /* The line of the stronger sign, or the middle of a thin line's two edges. *apart is the distance between those, else 0. With
@@ -157,7 +156,7 @@ static int choose(const samples *in, const asj_line_range *range, int variances,
         return 1;
     if (variances)
         find_variances(in, &list[!strong], !strong, &lines[!strong]);
-    thin(lines, range->first, range->last, found, apart);
+    take_middle(lines, range->first, range->last, found, apart);
     return 1;
 }
 
@@ -266,7 +265,7 @@ static int guess_from_sums(const asj_line_sums sums[2], const double t[2], asj_r
     found = lines[strong];
     if ((double)sums[!strong].w >= BOTH_STRONG * (double)sums[strong].w &&
         solve_sums(&sums[!strong], rough, middle, &lines[!strong]))
-        thin(lines, t[0], t[1], &found, &apart);
+        take_middle(lines, t[0], t[1], &found, &apart);
     if (!(fabs(found.b) < 1))
         return 0;
     const double unit = 1 / sqrt(1 + found.b * found.b);

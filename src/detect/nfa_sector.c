@@ -77,9 +77,11 @@ int32_t asj_nfa_tail_length(int32_t n)
 const double *asj_nfa_tail(const asj_nfa *nfa, int32_t n)
 {
     const double *tail = nfa->tails;
+    if (n > ASJ_NFA_TAIL_TERMS)
+        return NULL;
     for (int32_t terms = 1; terms < n; terms++)
         tail += asj_nfa_tail_length(terms);
-    return n <= ASJ_NFA_TAIL_TERMS ? tail : NULL;
+    return tail;
 }
 
 /* Where each value comes from: one term, closed form; up to ASJ_NFA_DIRECT terms, the table, and beyond its end the saddlepoint

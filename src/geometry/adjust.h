@@ -18,11 +18,11 @@ typedef struct asj_adjust_scratch {
     double *probability;
     asj_share *shares, *sorted;
     double *best;
-    float *spots; /* five a place */
+    float *spots; /* five a place: four coordinates, and how near others are (evidence.c) */
     double *weights[2]; /* of the places of either image: asj_weigh_places() */
 } asj_adjust_scratch;
 
-/* 0 without memory; to be freed either way. All zero at first. */
+/* `scratch` must be all zero. 0 without memory; to be freed either way. */
 int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_adjust_scratch *scratch);
 void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *scratch);
 
