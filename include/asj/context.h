@@ -159,7 +159,9 @@ ASJ_API void asj_context_options_init(asj_context_options *options);
  * sleep when there is no call, block all signals, and end in asj_context_free(). The child of a fork() that did not come in the
  * middle of a call may go on with a context that has no device, and makes threads of its own.
  * The functions in the options may not use the context that calls them. Log, progress, dump and kernel cache that try get
- * ASJ_ERROR_ARGUMENT, and asj_context_free() leaves it alone; allocator and parallel are not watched. */
+ * ASJ_ERROR_ARGUMENT, and asj_context_free() leaves it alone; allocator and parallel are not watched. They return to the library:
+ * what leaves one otherwise (an exception of C++, a panic of Rust, longjmp()) must be caught in it, since the call cannot be ended
+ * so; progress ends one by what it returns. */
 typedef struct asj_context asj_context;
 
 /* Makes a context. `options` NULL = the defaults. On success the caller owns *context until asj_context_free().
