@@ -132,8 +132,7 @@ static const signature *find_signature(const asj_input *input)
     };
     size_t i;
 
-    if (input->size >= 3 && input->bytes[0] == 'P' && input->bytes[1] && strchr("1234567fF", input->bytes[1]) &&
-        input->bytes[2] && strchr(" \t\r\n#", input->bytes[2]))
+    if (asj_pnm_begins(input->bytes, input->size))
         return &pnm;
     for (i = 0; i < sizeof signatures / sizeof signatures[0]; i++) {
         const signature *s = &signatures[i];

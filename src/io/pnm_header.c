@@ -2,7 +2,7 @@
 /* Headers are text: numbers between blanks and comments. The probe and the reader share this parser. */
 #include "pnm_header.h"
 
-#include "image_probe.h"
+#include "probe.h"
 
 #include <string.h>
 
@@ -126,11 +126,9 @@ static uint64_t pixel_bytes(const asj_pnm_header *header)
     return header->most == 0 ? 4 * count : header->most > 255 ? 2 * count : count;
 }
 
-/* Pictures may follow each other without anything in between, but after one in text. */
-static int begins_a_picture(const asj_input *input, size_t at)
+int asj_pnm_begins(const unsigned char *bytes, size_t size)
 {
-    const asj_input rest = {input->bytes + at, input->size - at};
-    return asj_probe_kind(&rest) == ASJ_KIND_PNM;
+    return size >= 3 && bytes[0] == 'P' && bytes[1] && strchr("1234567fF", bytes[1]) && bytes[2] && strchr(" \t\r\n#", bytes[2]);
 }
 
 void asj_probe_pnm(const asj_input *input, asj_image_probe *probe)
@@ -145,6 +143,8 @@ void asj_probe_pnm(const asj_input *input, asj_image_probe *probe)
     else if (header.width && header.height) {
         const uint64_t bytes = pixel_bytes(&header), left = input->size - header.pixels;
         probe->is_truncated = bytes > left;
-        probe->has_more = !header.is_text && bytes < left && begins_a_picture(input, header.pixels + (size_t)bytes);
+        /* pictures may follow each other without anything in between, but not behind one in text */
+        probe->has_more = !header.is_text && bytes < left &&
+                          asj_pnm_begins(input->bytes + header.pixels + (size_t)bytes, (size_t)(left - bytes));
     }
 }

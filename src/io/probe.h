@@ -42,4 +42,7 @@ void asj_probe_jpeg2000(const asj_input *input, asj_image_probe *probe);
 void asj_probe_pnm(const asj_input *input, asj_image_probe *probe);
 void asj_probe_tiff(const asj_input *input, asj_image_probe *probe);
 
+/* Whether a PNM picture begins so: 'P', which kind, a blank. */
+int asj_pnm_begins(const unsigned char *bytes, size_t size);
+
 #endif
