@@ -9,6 +9,7 @@
 
 #define GROUP (V_LANES > 16 ? 2 : 4) /* vectors worked on at once: as many running sums stay in registers */
 #define GROUP_PIXELS (GROUP * V_LANES)
+#define DEPTHS (2 * ASJ_FIELD_MAX_RADIUS + 1)
 #define AHEAD 2 /* rows: how far ahead the gradient is fetched */
 
 typedef char tiles_are_whole_groups[ASJ_FIELD_TILE % GROUP_PIXELS == 0 ? 1 : -1];
@@ -80,16 +81,17 @@ static void field_pixels(const asj_field *field, const asj_frame *frame, const a
     }
 }
 
-/* The planes of asj_sector_plan for one row of pixels; used[f]: those of family f that are wanted. */
-static void gamma_planes(const asj_sector_plan *plan, const int16_t *used, const int16_t *gx, const int16_t *gy, int32_t width,
-                         size_t stride, uint16_t *planes)
+/* The planes of asj_sector_plan for one row of pixels; used[f] >> shift, its last four bits: those of family f that are wanted. */
+static void gamma_planes(const asj_sector_plan *plan, const int16_t *used, int32_t shift, const int16_t *gx, const int16_t *gy,
+                         int32_t width, size_t stride, uint16_t *planes)
 {
-    for (int32_t f = 0; f < plan->family_count; f++, planes += 4 * stride) {
-        const int wanted = used[f];
+    const int16_t *const all_a = plan->a, *const all_b = plan->b; /* once: see batch_strengths() */
+    const int32_t count = plan->family_count;
+    for (int32_t f = 0; f < count; f++, planes += 4 * stride) {
+        const int wanted = used[f] >> shift & 15;
         if (!wanted)
             continue;
-        const vec a = v_set1(plan->a[f]), b = v_set1(plan->b[f]);
-        const vec minus_a = v_set1((int16_t)-plan->a[f]), minus_b = v_set1((int16_t)-plan->b[f]);
+        const vec a = v_set1(all_a[f]), b = v_set1(all_b[f]), minus_a = v_sub(v_zero(), a), minus_b = v_sub(v_zero(), b);
         for (int32_t i = 0; i < width; i += V_LANES) {
             const vec x = v_load(gx + i), y = v_load(gy + i);
             const vec xa = v_high(x, a), xb = v_high(x, b);
@@ -113,35 +115,37 @@ typedef struct tile {
     const asj_field *field;
     int32_t margin;                                     /* columns to the left of the tile */
     size_t stride;                                      /* from plane to plane */
+    int16_t used[2][ASJ_FIELD_MAX_OFFSETS];             /* of each family, in even and odd rows: see gamma_planes() */
     uint16_t *ring;
     int16_t *row;                                       /* of the gradient, taken apart */
-    const uint16_t *rows[2 * ASJ_FIELD_MAX_RADIUS + 1]; /* planes of the rows from the centre's - radius on, at x - radius */
-    int32_t place[ASJ_FIELD_MAX_OFFSETS];               /* of each offset: its plane and column from there */
+    uint32_t places[DEPTHS][ASJ_FIELD_MAX_OFFSETS];     /* of each offset in the ring, by the place of the centre's row in it */
     uint16_t *slots;
     int16_t *z;
 } tile;
 
-/* The slots of asj_sector_plan for a group of pixels, the first one number x of the tile's row. */
-static void fill_slots(const tile *t, int32_t x)
+/* The slots of asj_sector_plan for a group of pixels, the first one number x of the tile's row; places: of all offsets. */
+static void fill_slots(const tile *t, const uint32_t *places, int32_t x)
 {
-    const asj_sectors *s = &t->field->sectors;
     const asj_sector_plan *plan = &t->field->plan;
-    const uint16_t *const *middle = t->rows + s->radius;
+    const int16_t *const boundary = plan->boundary, *const extra = plan->extra; /* once: see batch_strengths() */
+    const int32_t plain_count = plan->plain_count, extra_count = plan->slot_count - plain_count;
+    const uint16_t *const ring = t->ring + x;
     uint16_t *slot = t->slots;
     vec sum[GROUP];
     for (int v = 0; v < GROUP; v++)
         sum[v] = v_zero();
-    for (int32_t j = 0, i = 0; j < plan->plain_count; j++, slot += GROUP_PIXELS) {
-        for (const int32_t end = plan->boundary[j]; i < end; i++) {
-            const uint16_t *gamma = middle[s->dy[i]] + t->place[i] + x;
+    const uint32_t *place = places;
+    for (int32_t j = 0; j < plain_count; j++, slot += GROUP_PIXELS) {
+        for (const uint32_t *const end = places + boundary[j]; place < end; place++) {
+            const uint16_t *gamma = ring + *place;
             for (int v = 0; v < GROUP; v++)
                 sum[v] = v_add(sum[v], v_load(gamma + v * V_LANES));
         }
         for (int v = 0; v < GROUP; v++)
             v_store(slot + v * V_LANES, sum[v]);
     }
-    for (int32_t e = 0; e < plan->slot_count - plan->plain_count; e++, slot += GROUP_PIXELS) {
-        const uint16_t *from = t->slots + plan->extra[e] * GROUP_PIXELS;
+    for (int32_t e = 0; e < extra_count; e++, slot += GROUP_PIXELS) {
+        const uint16_t *from = t->slots + (ptrdiff_t)extra[e] * GROUP_PIXELS;
         for (int v = 0; v < GROUP; v++)
             v_store(slot + v * V_LANES, v_add(sum[v], v_load(from + v * V_LANES)));
     }
@@ -281,15 +285,15 @@ static inline uint32_t spread(uint32_t bits)
     return (bits | bits << 1) & 0x5555;
 }
 
-/* Masks of the runs of a row of the tile; `runs` of them are inside it. */
-static void tile_row(const tile *t, int32_t runs, uint16_t *masks)
+/* Masks of the runs of a row of the tile; `runs` of them are inside it. places: see fill_slots(). */
+static void tile_row(const tile *t, const uint32_t *places, int32_t runs, uint16_t *masks)
 {
     const int32_t step = t->field->step, per_run = ASJ_LANES / step, per_group = GROUP_PIXELS / per_run;
     for (int32_t first = 0; first < runs; first += per_group) {
         const int32_t last = runs - first < per_group ? runs : first + per_group;
         uint16_t found[GROUP_PIXELS / 8] = {0};
         sector_words strong[GROUP];
-        fill_slots(t, first * per_run);
+        fill_slots(t, places, first * per_run);
         fill_strengths(t, strong);
         repeat_ends(t->z, t->field->sectors.count, t->field->suppress, GROUP_PIXELS);
         for (int v = 0; v < GROUP; v++) {
@@ -329,18 +333,15 @@ static void fill_planes(const tile *t, int32_t y, const int16_t *gx, const int16
     const int32_t step = t->field->step, depth = 2 * t->field->sectors.radius + 1;
     const size_t half = t->stride / (size_t)step, row = t->stride * 4 * (size_t)plan->family_count;
     uint16_t *planes = t->ring + (size_t)((y + depth) % depth) * row;
-    int16_t used[ASJ_FIELD_MAX_OFFSETS], *x_row = t->row, *y_row = x_row + t->stride;
+    int16_t *x_row = t->row, *y_row = x_row + t->stride;
     if (step > 1) {
         split_row(gx, width, x_row, x_row + half);
         split_row(gy, width, y_row, y_row + half);
     }
     for (int32_t column = 0; column < step; column++) {
-        for (int32_t f = 0; f < plan->family_count; f++) {
-            const int both = plan->used[0][f] | plan->used[1][f];
-            used[f] = (int16_t)(step > 1 ? plan->used[y & 1][f] >> 4 * column & 15 : (both | both >> 4) & 15);
-        }
         const size_t at = (size_t)column * half;
-        gamma_planes(plan, used, step > 1 ? x_row + at : gx, step > 1 ? y_row + at : gy, width, t->stride, planes + at);
+        gamma_planes(plan, t->used[y & 1], 4 * column, step > 1 ? x_row + at : gx, step > 1 ? y_row + at : gy, width, t->stride,
+                     planes + at);
     }
 }
 
@@ -356,9 +357,17 @@ static void open_tile(const asj_field *field, uint16_t *scratch, tile *t)
     t->row = (int16_t *)scratch + (size_t)depth * t->stride * 4 * (size_t)field->plan.family_count;
     t->slots = (uint16_t *)t->row + 2 * t->stride;
     t->z = (int16_t *)t->slots + (size_t)field->plan.slot_count * ASJ_FIELD_TILE;
+    for (int32_t f = 0; f < field->plan.family_count; f++) {
+        const int32_t even = field->plan.used[0][f], odd = field->plan.used[1][f], both = even | odd, all = (both | both >> 4) & 15;
+        t->used[0][f] = (int16_t)(step > 1 ? even : all);
+        t->used[1][f] = (int16_t)(step > 1 ? odd : all);
+    }
+    const int32_t row = 4 * field->plan.family_count * (int32_t)t->stride;
     for (int32_t i = 0; i < s->offset_count; i++) {
         const int32_t column = s->dx[i] + t->margin;
-        t->place[i] = field->plan.plane[i] * (int32_t)t->stride + column % step * (int32_t)half + column / step;
+        const int32_t place = field->plan.plane[i] * (int32_t)t->stride + column % step * (int32_t)half + column / step;
+        for (int32_t centre = 0, y = (s->dy[i] + depth) % depth; centre < depth; centre++, y = y + 1 < depth ? y + 1 : 0)
+            t->places[centre][i] = (uint32_t)(place + y * row);
     }
 }
 
@@ -370,7 +379,6 @@ static void field_tile(const asj_field *field, const asj_frame *frame, const asj
     tile t;
     open_tile(field, scratch, &t);
     const int32_t width = groups * GROUP_PIXELS + 2 * t.margin / field->step;
-    const size_t row = t.stride * 4 * (size_t)field->plan.family_count;
     for (int32_t y = top - radius; y < bottom + radius; y++) {
         const ptrdiff_t at = y * frame->stride + run * ASJ_LANES - t.margin;
         if (y + AHEAD < bottom + radius) {
@@ -386,9 +394,7 @@ static void field_tile(const asj_field *field, const asj_frame *frame, const asj
             memset(found, 0, (size_t)runs * sizeof *found);
             continue;
         }
-        for (int32_t i = 0; i < depth; i++)
-            t.rows[i] = t.ring + (size_t)((centre + i - radius + depth) % depth) * row;
-        tile_row(&t, runs, found);
+        tile_row(&t, t.places[centre % depth], runs, found);
         asj_field_thin(field, frame, run, runs, found);
     }
 }
