@@ -7,6 +7,7 @@
 #include "loads.h"
 
 #include <immintrin.h>
+#include <math.h>
 
 typedef struct lane_sums {
     __m256 w, x, y, xx, xy, yy;
@@ -80,7 +81,8 @@ static inline void sum_columns(const asj_frame *frame, const asj_line_band *band
     const __m256 valid = _mm256_cmp_ps(at, _mm256_set1_ps((float)band->right), _CMP_LE_OQ);
     const __m256 t = _mm256_mul_ps(_mm256_set1_ps(band->step_t), dx), s = _mm256_mul_ps(_mm256_set1_ps(band->step_s), dx);
     const __m256 reach_t = _mm256_set1_ps(band->reach_t), reach_s = _mm256_set1_ps(band->reach_s);
-    const __m256 first = _mm256_max_ps(_mm256_sub_ps(t, reach_t), _mm256_sub_ps(s, reach_s));
+    const __m256 earliest = _mm256_max_ps(_mm256_sub_ps(t, reach_t), _mm256_sub_ps(s, reach_s));
+    const __m256 first = _mm256_blendv_ps(_mm256_set1_ps(HUGE_VALF), earliest, valid); /* no row of what is no column */
     const __m256 last = _mm256_min_ps(_mm256_add_ps(t, reach_t), _mm256_add_ps(s, reach_s));
     const ptrdiff_t stride = frame->stride;
     int32_t first_row, last_row;
@@ -94,7 +96,7 @@ static inline void sum_columns(const asj_frame *frame, const asj_line_band *band
         const __m256 dy = _mm256_set1_ps((float)row - band->middle_y), is_up = _mm256_cmp_ps(across, zero, _CMP_GT_OQ);
         const __m256 inside = _mm256_and_ps(_mm256_cmp_ps(dy, first, _CMP_GE_OQ), _mm256_cmp_ps(dy, last, _CMP_LE_OQ));
         __m256 w = _mm256_sub_ps(_mm256_andnot_ps(sign, across), _mm256_andnot_ps(sign, along));
-        w = _mm256_and_ps(_mm256_max_ps(w, zero), _mm256_and_ps(valid, inside));
+        w = _mm256_and_ps(_mm256_max_ps(w, zero), inside);
         add_lanes(&up, _mm256_and_ps(w, is_up), dy);
         add_lanes(&down, _mm256_andnot_ps(is_up, w), dy);
     }
