@@ -81,7 +81,8 @@ static void clear_margins(const asj_frame *frame, int16_t *rows)
 }
 
 /* Gray levels stand last: asj_frame_halve() reads those of the larger image when the planes of the smaller one have been set up. */
-asj_status asj_frame_prepare_gray(asj_context *context, asj_frame *frame, int32_t width, int32_t height)
+/* Everything but the memory. Returns how many elements of it that takes. */
+static size_t set_size(asj_frame *frame, int32_t width, int32_t height)
 {
     frame->width = width;
     frame->height = height;
@@ -89,16 +90,27 @@ asj_status asj_frame_prepare_gray(asj_context *context, asj_frame *frame, int32_
     frame->octaves = 1;
     frame->blocks = (width + ASJ_LANES - 1) / ASJ_LANES;
     frame->stride = (ptrdiff_t)frame->blocks * ASJ_LANES + 2 * ASJ_MARGIN;
-    const size_t stride = (size_t)frame->stride, padded = stride * ((size_t)height + 2 * ASJ_MARGIN);
-    const size_t gray = stride * ((size_t)height + 2 * ASJ_GRAY_BORDER) + 2 * ASJ_GRAY_MARGIN;
-    const size_t origin = ASJ_MARGIN * stride + ASJ_MARGIN;
-    const asj_status status = prepare_memory(context, frame, 2 * padded + gray);
-    if (status != ASJ_OK)
-        return status;
-    frame->gradient_x = frame->memory + origin;
+    const size_t stride = (size_t)frame->stride;
+    return 2 * stride * ((size_t)height + 2 * ASJ_MARGIN) + stride * ((size_t)height + 2 * ASJ_GRAY_BORDER) + 2 * ASJ_GRAY_MARGIN;
+}
+
+static void set_planes(asj_frame *frame)
+{
+    const size_t stride = (size_t)frame->stride, padded = stride * ((size_t)frame->height + 2 * ASJ_MARGIN);
+    frame->gradient_x = frame->memory + ASJ_MARGIN * stride + ASJ_MARGIN;
     frame->gradient_y = frame->gradient_x + padded;
     frame->gray = (uint16_t *)frame->memory + 2 * padded + ASJ_GRAY_MARGIN + ASJ_GRAY_BORDER * stride;
-    return ASJ_OK;
+}
+
+asj_status asj_frame_prepare_gray(asj_context *context, asj_frame *frame, int32_t width, int32_t height)
+{
+    const size_t count = set_size(frame, width, height);
+    const asj_status status = prepare_memory(context, frame, count);
+    if (count > frame->loaded)
+        frame->loaded = 0;
+    if (status == ASJ_OK)
+        set_planes(frame);
+    return status;
 }
 
 asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t width, int32_t height)
@@ -268,7 +280,21 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
         if (!load_row_at(&j, y))
             return asj_fail(context, ASJ_ERROR_IMAGE, "row %d of the image holds NaN or infinity", (int)y);
     repeat_rows(frame);
-    return asj_watch_end(&watch);
+    const asj_status status = asj_watch_end(&watch);
+    frame->loaded = status == ASJ_OK ? 2 * (size_t)frame->stride * ((size_t)height + 2 * ASJ_MARGIN) : 0;
+    frame->loaded_width = frame->width;
+    frame->loaded_height = height;
+    frame->loaded_plane = plane;
+    return status;
+}
+
+int asj_frame_recall(asj_frame *frame, int32_t width, int32_t height, int32_t plane)
+{
+    if (!frame->loaded || frame->loaded_width != width || frame->loaded_height != height || frame->loaded_plane != plane)
+        return 0;
+    set_size(frame, width, height);
+    set_planes(frame);
+    return 1;
 }
 
 const asj_image_ops asj_image_reference = {.luma = asj_image_luma};

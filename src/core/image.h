@@ -28,6 +28,8 @@ typedef struct asj_frame {
     int16_t *gradient_y;
     int16_t *memory;              /* what the three planes stand in */
     size_t capacity;              /* elements of it */
+    size_t loaded;                /* behind so many stands the grey plane that asj_frame_load() has filled last; 0 = no more, */
+    int32_t loaded_width, loaded_height, loaded_plane; /* and what it is */
     double octave;                /* how often the image was halved to make it, 1/2 by sqrt 2; -1 = it was upsampled by two */
     int32_t octaves;              /* that share the false alarms allowed: 1, or more (octaves.c) */
     void *rows;                   /* scratch of asj_gradient() */
@@ -97,5 +99,8 @@ asj_status asj_frame_load_resized(asj_context *context, asj_frame *frame, const 
 
 /* Fills frame->gray with a plane of the view, ASJ_PLANE_... (asj_frame_prepare() first). Finds NaN and infinity. */
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image, int32_t plane);
+/* Back to that plane, where it is of this size and nothing has been put over it since: coarser octaves stand before it. 0 = it has
+ * to be loaded again. The gradient must not be read. */
+int asj_frame_recall(asj_frame *frame, int32_t width, int32_t height, int32_t plane);
 
 #endif

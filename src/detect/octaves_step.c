@@ -56,13 +56,20 @@ static void confirm_other(const asj_detection_run *run, asj_hypothesis *hypothes
         confirm(run, hypothesis);
 }
 
-/* With the image's own grey plane, made again. */
+/* The image's own grey plane, which is there yet or is made again. */
+static asj_status go_back(asj_detection_run *run)
+{
+    const int32_t width = run->image->width, height = run->image->height;
+    run->octave = 0;
+    if (run->size == 0 && asj_frame_recall(run->frame, width, height, run->plane))
+        return ASJ_OK;
+    const asj_status status = asj_frame_prepare_gray(run->context, run->frame, width, height);
+    return status == ASJ_OK ? asj_step_load(run) : status;
+}
+
 static asj_status confirm_others(asj_detection_run *run)
 {
-    asj_status status = asj_frame_prepare_gray(run->context, run->frame, run->image->width, run->image->height);
-    run->octave = 0;
-    if (status == ASJ_OK)
-        status = asj_step_load(run);
+    const asj_status status = go_back(run);
     return status == ASJ_OK ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm_other) : status;
 }
 

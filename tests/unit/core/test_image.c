@@ -358,6 +358,43 @@ static void test_halve_row(void **state)
     assert_int_equal(means[WIDTH], 7);
 }
 
+/* A loaded plane is there yet behind those of coarser octaves, border included; not behind a larger one, in another size, of
+ * another plane, or where octaves are so small that their margins reach it. */
+static void test_recall(void **state)
+{
+    enum { WIDTH = 93, HEIGHT = 85, ROW = WIDTH + 2 * ASJ_GRAY_BORDER, ROWS = HEIGHT + 2 * ASJ_GRAY_BORDER };
+    static uint8_t pixels[HEIGHT][WIDTH];
+    static uint16_t before[ROWS][ROW];
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0}, little = {pixels, ASJ_FORMAT_GRAY8, 4, 4, WIDTH, 0};
+    unit_fixture *f = *state;
+    synth_random random;
+    synth_random_seed(&random, 6);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            pixels[y][x] = (uint8_t)synth_random_between(&random, 0, 256);
+    assert_int_equal(load(f, &image), ASJ_OK);
+    for (int y = 0; y < ROWS; y++)
+        memcpy(before[y], f->frame.gray + (y - ASJ_GRAY_BORDER) * f->frame.stride - ASJ_GRAY_BORDER, sizeof before[y]);
+    for (int octave = 1; octave < 4; octave++) {
+        assert_int_equal(asj_frame_halve(f->context, &f->frame), ASJ_OK);
+        for (int32_t y = 0; y < f->frame.height; y++) {
+            memset(f->frame.gradient_x + y * f->frame.stride, 1, (size_t)f->frame.width * sizeof *f->frame.gradient_x);
+            memset(f->frame.gradient_y + y * f->frame.stride, 2, (size_t)f->frame.width * sizeof *f->frame.gradient_y);
+        }
+    }
+    assert_false(asj_frame_recall(&f->frame, WIDTH, HEIGHT - 1, ASJ_PLANE_LUMA));
+    assert_false(asj_frame_recall(&f->frame, WIDTH, HEIGHT, ASJ_PLANE_LUMA + 1));
+    assert_true(asj_frame_recall(&f->frame, WIDTH, HEIGHT, ASJ_PLANE_LUMA));
+    assert_true(f->frame.width == WIDTH && f->frame.height == HEIGHT && f->frame.octave == 0);
+    for (int y = 0; y < ROWS; y++)
+        assert_memory_equal(before[y], f->frame.gray + (y - ASJ_GRAY_BORDER) * f->frame.stride - ASJ_GRAY_BORDER, sizeof before[y]);
+    assert_int_equal(asj_frame_prepare(f->context, &f->frame, WIDTH + 40, HEIGHT), ASJ_OK);
+    assert_false(asj_frame_recall(&f->frame, WIDTH, HEIGHT, ASJ_PLANE_LUMA));
+    assert_int_equal(load(f, &little), ASJ_OK);
+    assert_int_equal(asj_frame_halve(f->context, &f->frame), ASJ_OK);
+    assert_false(asj_frame_recall(&f->frame, 4, 4, ASJ_PLANE_LUMA));
+}
+
 /* The mean of the plane between first and end along both axes, pixel k from k to k + 1. */
 static double mean_between(const uint8_t *pixels, int32_t width, double left, double right, double top, double bottom)
 {
@@ -453,7 +490,7 @@ int main(void)
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides),
         cmocka_unit_test(test_bottom_up), cmocka_unit_test(test_not_finite),
         cmocka_unit_test(test_prepare), cmocka_unit_test(test_upsample), cmocka_unit_test(test_shrink),
-        cmocka_unit_test(test_shrink_in_place), cmocka_unit_test(test_halve_row),
+        cmocka_unit_test(test_shrink_in_place), cmocka_unit_test(test_halve_row), cmocka_unit_test(test_recall),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
