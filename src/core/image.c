@@ -80,7 +80,6 @@ static void clear_margins(const asj_frame *frame, int16_t *rows)
     }
 }
 
-/* Gray levels stand last: asj_frame_halve() reads those of the larger image when the planes of the smaller one have been set up. */
 /* Everything but the memory. Returns how many elements of it that takes. */
 static size_t set_size(asj_frame *frame, int32_t width, int32_t height)
 {
@@ -94,6 +93,7 @@ static size_t set_size(asj_frame *frame, int32_t width, int32_t height)
     return 2 * stride * ((size_t)height + 2 * ASJ_MARGIN) + stride * ((size_t)height + 2 * ASJ_GRAY_BORDER) + 2 * ASJ_GRAY_MARGIN;
 }
 
+/* Gray levels stand last: asj_frame_halve() reads those of the larger image when the planes of the smaller one have been set up. */
 static void set_planes(asj_frame *frame)
 {
     const size_t stride = (size_t)frame->stride, padded = stride * ((size_t)frame->height + 2 * ASJ_MARGIN);
