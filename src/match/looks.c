@@ -3,7 +3,7 @@
  *
  * Poses are two witnesses of one motion. The rules, in the order in which they are asked; each stands in full above its code:
  *   - What only one of the two looks can tell is told by that one.                                             asj_looks_of()
- *   - Of two accepted poses that agree the surer one is the answer.                                            compare()
+ *   - Of two accepted poses that agree as far as they know the surer one is the answer.                        compare()
  *   - Of two that are at odds pictures decide, then much more evidence, then which one is upside down; or
  *     nothing does.                                                                                            decide()
  *   - Images that repeat themselves need more than other images do, and upsampled ones that do so leave what the
@@ -203,11 +203,21 @@ static asj_looks decide(const asj_geometry *own, const asj_geometry *upsampled)
                ? ASJ_LOOKS_SETTLED : ASJ_LOOKS_DISPUTED;
 }
 
-/* Of two accepted poses, or turns of a camera: the surer one where they agree as far as they know. */
+/* Of two poses that do not contradict each other: is `a` known better, and from much more evidence? */
+static int32_t is_surer(const asj_geometry *a, const asj_geometry *b)
+{
+    return !are_at_odds(a, b) && uncertainty(a) < uncertainty(b) && a->log10_nfa < SURPASSES * b->log10_nfa;
+}
+
+/* Of two accepted poses, or turns of a camera: the surer one where they agree as far as they know. What is also from so much more
+ * evidence, and a pose of its own, needs no matches that come again: the images' pose is known so badly because these tell little
+ * (room 7399, to 7 degrees, which it was out by). */
 static asj_looks compare(const asj_geometry *own, const asj_geometry *upsampled)
 {
     if (are_at_odds(own, upsampled))
         return decide(own, upsampled);
+    if (is_surer(upsampled, own) && upsampled->log10_nfa < SURELY && !have_same_pose(own, upsampled))
+        return ASJ_LOOKS_SETTLED;
     return uncertainty(upsampled) <= uncertainty(own) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
 }
 
@@ -287,12 +297,6 @@ int32_t asj_looks_want_other(const asj_match_result *own)
     if (g->status == ASJ_GEOMETRY_AMBIGUOUS)
         return asj_looks_may_settle(own) && !repeats(g);
     return g->status != ASJ_GEOMETRY_NOT_ASKED && !is_enough(g);
-}
-
-/* Of two poses that do not contradict each other: is `a` known better, and from much more evidence? */
-static int32_t is_surer(const asj_geometry *a, const asj_geometry *b)
-{
-    return !are_at_odds(a, b) && uncertainty(a) < uncertainty(b) && a->log10_nfa < SURPASSES * b->log10_nfa;
 }
 
 /* Where the images have chance or too little, whatever the other look accepts. Otherwise no pose is no answer, nor is one that is

@@ -50,6 +50,27 @@ static void pictures_decide_between_poses(void **state)
     }
 }
 
+/* The images' pose is known to `sd` and is a few degrees from that of the upsampled ones, known to .3 degrees: with 1.25 times the
+ * evidence that is the answer, whatever their matches are. */
+static void what_is_surer_by_far_settles(void **state)
+{
+    static const struct {
+        double sd, degrees, own_nfa, upsampled_nfa;
+        asj_looks looks;
+    } cases[] = {{.13, 7, -72, -131, ASJ_LOOKS_SETTLED},      {.13, 7, -72, -91, ASJ_LOOKS_SETTLED},
+                 {.13, 7, -72, -89, ASJ_LOOKS_BY_UPSAMPLED},  {.13, 3, -72, -131, ASJ_LOOKS_BY_UPSAMPLED},
+                 {.003, 7, -72, -131, ASJ_LOOKS_DISPUTED},    {.13, 7, -20, -34, ASJ_LOOKS_BY_UPSAMPLED}};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result own, upsampled;
+        make(&own, ASJ_GEOMETRY_ACCEPTED, cases[k].own_nfa, cases[k].degrees, .6);
+        for (int i = 0; i < 6; i++)
+            own.geometry.covariance[7 * i] = cases[k].sd * cases[k].sd;
+        make(&upsampled, ASJ_GEOMETRY_ACCEPTED, cases[k].upsampled_nfa, 0, .65);
+        assert_int_equal(asj_looks_of(&own, &upsampled), cases[k].looks);
+    }
+}
+
 /* Rivals of the images, which the upsampled ones or colours settle. */
 static void pictures_settle_what_is_ambiguous(void **state)
 {
@@ -157,6 +178,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_decide_between_poses),
+        cmocka_unit_test(what_is_surer_by_far_settles),
         cmocka_unit_test(pictures_settle_what_is_ambiguous),
         cmocka_unit_test(rivals_with_much_evidence_are_a_dispute),
         cmocka_unit_test(little_agreement_is_looked_at_again),
