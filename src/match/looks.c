@@ -30,6 +30,7 @@
 #define LEAST_APART (3 * ASJ_DEGREE) /* of two that do, no less is at odds, */
 #define SURELY_APART 6.5             /* and no less than so many standard deviations (of others up to 5.9) */
 #define OTHER_POSE (8 * ASJ_DEGREE)  /* another motion: pictures decide, and evidence may leave it open */
+#define MUCH_SURER 4.0               /* times as well known (room 7399: 21; frames of a video, where it was wrong: 1.02) */
 #define HALF_TURN 1e-6               /* 2 sin of an angle that is 180 degrees */
 
 /* Evidence of the upsampled images, or of the colours: */
@@ -209,14 +210,15 @@ static int32_t is_surer(const asj_geometry *a, const asj_geometry *b)
     return !are_at_odds(a, b) && uncertainty(a) < uncertainty(b) && a->log10_nfa < SURPASSES * b->log10_nfa;
 }
 
-/* Of two accepted poses, or turns of a camera: the surer one where they agree as far as they know. What is also from so much more
- * evidence, and a pose of its own, needs no matches that come again: the images' pose is known so badly because these tell little
- * (room 7399, to 7 degrees, which it was out by). */
+/* Of two accepted poses, or turns of a camera: the surer one where they agree as far as they know. Where the images' pose is hardly
+ * known beside another one from more evidence, that needs no matches that come again: those of the images tell little. (Room 7399:
+ * known to 7 degrees, which it was out by, and to .4.) */
 static asj_looks compare(const asj_geometry *own, const asj_geometry *upsampled)
 {
     if (are_at_odds(own, upsampled))
         return decide(own, upsampled);
-    if (is_surer(upsampled, own) && upsampled->log10_nfa < SURELY && !have_same_pose(own, upsampled))
+    if (is_surer(upsampled, own) && MUCH_SURER * MUCH_SURER * uncertainty(upsampled) < uncertainty(own) &&
+        upsampled->log10_nfa < SURELY && !have_same_pose(own, upsampled))
         return ASJ_LOOKS_SETTLED;
     return uncertainty(upsampled) <= uncertainty(own) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
 }
