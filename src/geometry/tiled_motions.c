@@ -32,8 +32,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#define DOUBTFUL 0.62
-#define AGREES 0.75
+#define DOUBTFUL 0.62 /* of the share that agrees (picture_agreement.h) */
+#define AGREES 0.75   /* likewise */
 #define OTHER_MOTION (3 * ASJ_DEGREE) /* what is nearer is the best one again */
 #define LEAST_MATCHED 6 /* on a plane */
 #define CORNERS 4 /* of a plane */
@@ -202,9 +202,10 @@ static asj_status find(asj_estimation *e, tiled *t, asj_model *motions, int32_t 
 {
     asj_memory *memory = &e->context->memory;
     uint8_t *seen = asj_allocate_zero(memory, (size_t)e->set.place_count[1], sizeof *seen);
+    const int32_t has_rays = seen != NULL;
     for (int32_t k = 0; k < t->best->view.plane_count; k++)
         find_corners(t, k, &e->pictures->planes[k]);
-    if (seen)
+    if (has_rays)
         find_rays(t, seen);
     asj_release(memory, seen);
     const size_t all = (size_t)count_all(t), room = all > SHORT ? all : SHORT;
@@ -212,7 +213,7 @@ static asj_status find(asj_estimation *e, tiled *t, asj_model *motions, int32_t 
     t->models = asj_allocate(memory, SHORT, sizeof *t->models);
     t->picked = asj_allocate(memory, DISTINCT, sizeof *t->picked);
     t->scratch = asj_adjust_scratches_create(memory, &e->set, e->context->threads);
-    if (!seen || !t->order || !t->models || !t->picked || !t->scratch)
+    if (!has_rays || !t->order || !t->models || !t->picked || !t->scratch)
         return asj_fail(e->context, ASJ_ERROR_MEMORY, "no memory for the motions that tiles allow");
     *count = keep_agreeing(e, t, find_likely(t), motions);
     return *count == 0 ? ASJ_OK : asj_refine_motions(e->context, &e->set, t->best->cameras, e->options->seed, 0, motions, count);
