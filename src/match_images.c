@@ -41,6 +41,7 @@
 #include "core/colour_plane.h"
 #include "core/number_text.h"
 #include "geometry/geometry_options.h"
+#include "match/both_poses.h"
 #include "match/final_pose.h"
 #include "match/upsampled.h"
 #include "match/upsampled_geometry.h"
@@ -253,8 +254,11 @@ static asj_status look_with_colours(search *s, double from, double part)
         status = look_closer(&other, &stretch, from + FIRST * part, (1 - FIRST) * part);
     memcpy(s->stage_ms, other.stage_ms, sizeof s->stage_ms);
     const int32_t believed = status == ASJ_OK && asj_looks_take(s->best, other.best);
+    const asj_geometry of_own = s->best->geometry;
     asj_match_result_free(believed ? &s->best : &other.best);
     if (believed) {
+        if (asj_looks_agree(&of_own, &other.best->geometry))
+            asj_both_poses(&of_own, &other.best->geometry);
         s->best = other.best;
         s->best->coloured = 1;
     }

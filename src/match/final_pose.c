@@ -27,6 +27,7 @@
  * The covariance stays C: errors of locations are shared by more than those of a place (an edge that is thick, a lens), and what
  * the curvature above promises is half of what poses err by. (tests/accuracy/tried/geometry.md, "Where the matches lie".) */
 #include "final_pose.h"
+#include "pose_parameters.h"
 #include "geometry/model.h"
 #include "geometry/small_matrix.h"
 #include "core/sort.h"
@@ -34,14 +35,13 @@
 #include <math.h>
 #include <string.h>
 
-#define MOTION 5
+#define MOTION ASJ_POSE_PARAMETERS
 #define FEW 20.0            /* places */
 #define MANY 80.0
 #define LEAST_PROBABLE 0.5F
 #define SAME_PLACE 5.0F     /* px */
 #define LEAST_SCALE 0.05    /* px: locations are no surer */
 #define TO_SD 1.4826        /* of normal errors, a standard deviation over the median size */
-#define LEAST_SD 1e-5       /* rad: of C, so that it has an inverse */
 #define MOST_ROUNDS 15
 #define STILL 1e-8          /* rad */
 
@@ -60,7 +60,7 @@ typedef struct distance {
 
 typedef struct fit {
     asj_camera cameras[2];
-    double rotation[9], translation[3], axes[2][3]; /* what was found, and across the translation */
+    asj_pose_origin origin;                         /* what was found */
     double information[MOTION * MOTION];            /* C^-1 */
     double share;                                   /* of what distances say */
     double at[MOTION];                              /* p */
@@ -104,39 +104,13 @@ static void collect(const asj_match_result *result, fit *f)
     }
 }
 
-/* C of the five parameters from that of turn and translation, and its inverse; 0 when it has none. */
-static int32_t set_information(const asj_geometry *g, fit *f)
-{
-    double to[MOTION][6] = {{1}, {0, 1}, {0, 0, 1}};
-    memcpy(&to[3][3], f->axes[0], sizeof f->axes[0]);
-    memcpy(&to[4][3], f->axes[1], sizeof f->axes[1]);
-    double c[MOTION * MOTION];
-    for (int32_t i = 0; i < MOTION; i++)
-        for (int32_t k = 0; k < MOTION; k++) {
-            c[i * MOTION + k] = i == k ? LEAST_SD * LEAST_SD : 0;
-            for (int32_t n = 0; n < 36; n++)
-                c[i * MOTION + k] += to[i][n / 6] * g->covariance[n] * to[k][n % 6];
-        }
-    return asj_invert_positive(c, MOTION, f->information, NULL);
-}
-
 /* --- the steps ---------------------------------------------------------------------------------------------------------------- */
-
-static void pose_at(const fit *f, double rotation[9], double translation[3])
-{
-    double turn[9];
-    asj_rotation_of(f->at, turn);
-    asj_multiply3(turn, f->rotation, rotation);
-    for (int32_t k = 0; k < 3; k++)
-        translation[k] = f->translation[k] + f->at[3] * f->axes[0][k] + f->at[4] * f->axes[1][k];
-    asj_normalise3(translation);
-}
 
 /* F of a pose, and its derivatives. */
 static void set_matrices(const fit *f, double matrix[9], double slopes[MOTION][9])
 {
     double rotation[9], translation[3], cross[9], essential[9];
-    pose_at(f, rotation, translation);
+    asj_pose_at(&f->origin, f->at, rotation, translation);
     asj_skew3(translation, cross);
     asj_multiply3(cross, rotation, essential);
     asj_pixel_fundamental(essential, f->cameras, matrix);
@@ -149,7 +123,7 @@ static void set_matrices(const fit *f, double matrix[9], double slopes[MOTION][9
         asj_pixel_fundamental(essential, f->cameras, slopes[k]);
     }
     for (int32_t k = 0; k < 2; k++) {
-        asj_skew3(f->axes[k], cross);
+        asj_skew3(f->origin.axes[k], cross);
         asj_multiply3(cross, rotation, essential);
         asj_pixel_fundamental(essential, f->cameras, slopes[3 + k]);
     }
@@ -237,16 +211,6 @@ static int32_t step(fit *f)
     return size > STILL;
 }
 
-static void tell(const fit *f, asj_geometry *g)
-{
-    double cross[9], essential[9];
-    pose_at(f, g->rotation, g->translation);
-    asj_skew3(g->translation, cross);
-    asj_multiply3(cross, g->rotation, essential);
-    if (g->model == ASJ_GEOMETRY_ESSENTIAL)
-        asj_fundamental_of(essential, f->cameras, g->matrix);
-}
-
 static void run(const asj_match_result *result, fit *f, asj_geometry *g)
 {
     double places = 0;
@@ -254,11 +218,11 @@ static void run(const asj_match_result *result, fit *f, asj_geometry *g)
     for (size_t n = 0; n < f->count; n++)
         places += f->sights[n].weight;
     f->share = fmin(1, (places - FEW) / (MANY - FEW));
-    if (!(f->share > 0) || !set_information(g, f))
+    if (!(f->share > 0) || !asj_pose_information(&f->origin, g, f->information))
         return;
     for (int32_t round = 0; round < MOST_ROUNDS && step(f); round++) {
     }
-    tell(f, g);
+    asj_pose_tell(&f->origin, f->at, g);
 }
 
 asj_status asj_finish_pose(asj_context *context, asj_match_result **result)
@@ -267,9 +231,7 @@ asj_status asj_finish_pose(asj_context *context, asj_match_result **result)
     fit f = {.cameras = {g->cameras[0], g->cameras[1]}};
     if (g->status != ASJ_GEOMETRY_ACCEPTED || !g->has_pose || !(f.cameras[0].fx > 0 && f.cameras[1].fx > 0) || g->focal_sd > 0)
         return ASJ_OK;
-    memcpy(f.rotation, g->rotation, sizeof f.rotation);
-    memcpy(f.translation, g->translation, sizeof f.translation);
-    asj_translation_axes(g->translation, f.axes[0], f.axes[1]);
+    asj_pose_origin_of(g, &f.origin);
     f.sights = asj_allocate(&context->memory, (*result)->match_count, sizeof *f.sights);
     f.sorted = asj_allocate(&context->memory, (*result)->match_count, sizeof *f.sorted);
     const int32_t good = f.sights && f.sorted;

@@ -3,7 +3,7 @@
  *
  * Poses are two witnesses of one motion. The rules, in the order in which they are asked; each stands in full above its code:
  *   - What only one of the two looks can tell is told by that one.                                             asj_looks_of()
- *   - Of two accepted poses that agree as far as they know the surer one is the answer.                        compare()
+ *   - Of two accepted poses that agree as far as they know the mean is told; the surer one judges.             compare()
  *   - Of two that are at odds pictures decide, then much more evidence, then which one is upside down; or
  *     nothing does.                                                                                            decide()
  *   - Images that repeat themselves need more than other images do, and upsampled ones that do so leave what the
@@ -116,6 +116,16 @@ static int32_t are_at_odds(const asj_geometry *a, const asj_geometry *b)
 {
     const distance d = measure(a, b);
     return fmax(d.rotation, d.translation) > LEAST_APART && d.deviations > SURELY_APART;
+}
+
+static int32_t is_sure_pose(const asj_geometry *g)
+{
+    return g->status == ASJ_GEOMETRY_ACCEPTED && g->has_pose && !(g->focal_sd > 0);
+}
+
+int32_t asj_looks_agree(const asj_geometry *a, const asj_geometry *b)
+{
+    return is_sure_pose(a) && is_sure_pose(b) && !are_at_odds(a, b);
 }
 
 /* Sum of the variances of rotation and translation. */

@@ -19,6 +19,9 @@ typedef enum asj_looks {
 
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled);
 
+/* Are these two estimates of one pose: both accepted, of cameras that were given, and not at odds? */
+int32_t asj_looks_agree(const asj_geometry *a, const asj_geometry *b);
+
 /* Is there something that another kind of look (at colours) may answer: no geometry, a motion that stays open or is not sure, or
  * rivals none of which is sure? */
 int32_t asj_looks_want_other(const asj_match_result *own);

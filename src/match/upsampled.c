@@ -18,6 +18,7 @@
  * One geometry judges both, and where the images leave it open or the two are at odds it says which ones are, whether or not
  * matches come again (looks.c). What was tried: tests/accuracy/tried/matching.md, "Images upsampled". */
 #include "upsampled.h"
+#include "both_poses.h"
 #include "upsampled_geometry.h"
 #include "result_changes.h"
 #include "same_place.h"
@@ -186,10 +187,13 @@ asj_status asj_upsampled_choose(asj_context *context, asj_match_result **own, as
 {
     const size_t count = (*own)->match_count;
     const asj_looks looks = asj_looks_of(*own, *upsampled);
+    const asj_match_result *both = *upsampled;
     const asj_geometry of_own = (*own)->geometry, of_upsampled = (*upsampled)->geometry;
     uint8_t *found = asj_allocate(&context->memory, count, sizeof *found);
     const asj_status status = found ? choose(context, own, upsampled, found, looks, same_lists)
                                     : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
+    if (*own == both && asj_looks_agree(&of_own, &of_upsampled))
+        asj_both_poses(looks == ASJ_LOOKS_BY_IMAGES ? &of_upsampled : &of_own, &(*own)->geometry);
     if (looks == ASJ_LOOKS_DISPUTED)
         asj_looks_leave_open(&of_own, &of_upsampled, *own);
     else if (looks == ASJ_LOOKS_PLANE)
