@@ -54,6 +54,7 @@
                     * no geometry was left; planes at extreme angles 95 to 190 right ones */
 #define SURELY_ENOUGH 32 /* .. where a geometry tells no pose. (LePoint3, with a focal length that is looked for: 18 matches as it
                     * is, 6 of them wrong, 720 right ones of 721 stretched) */
+#define MANY 8     /* matches beside a geometry that is chance: worth another one */
 #define HINT 6     /* matches of the trial. On one octave false ones are rarer; the whole look decides */
 #define FIRST 0.2  /* of all the progress, for the look as they are, */
 #define CLOSER 0.4 /* .. and for the upsampled one */
@@ -153,13 +154,15 @@ static asj_status look(search *s, const asj_stretch *stretch, const asj_detect_o
 
 /* Whether to ask the upsampled images for a geometry: a motion, also where the images have a plane without one. Where cameras are
  * known and the images' is chance, that of the upsampled ones is not believed either (accepted then: of 398 pairs of rooms one, of
- * 397 unrelated ones nine). Without cameras it is, when matches come again (of 198 pairs five, of 197 unrelated ones five). */
+ * 397 unrelated ones nine), but beside MANY matches (of 800 pairs one is accepted, and is right, of 395 unrelated ones none).
+ * Without cameras it is, when matches come again (of 198 pairs five, of 197 unrelated ones five). */
 static int32_t asks_closer(const search *s)
 {
     const asj_geometry *g = &s->best->geometry;
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
         return g->has_pose || g->only_turns || asj_cameras_are_known(&s->options->geometry);
-    return asks_geometry(s) && (asj_geometry_is_open(g) || !asj_cameras_are_known(&s->options->geometry));
+    return asks_geometry(s) && (asj_geometry_is_open(g) || s->best->match_count >= MANY ||
+                                !asj_cameras_are_known(&s->options->geometry));
 }
 
 static double pixels_of(const asj_image *image)
