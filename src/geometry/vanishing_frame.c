@@ -95,7 +95,7 @@ static double unusual(const frame_search *f, double focal)
     return 0.5 * off * off;
 }
 
-/* Of the three points together. */
+/* Of the three points together. log_nfa HUGE_VAL, and the level as it was: too few lines vote for them. */
 static void judge(const frame_search *f, trial *t)
 {
     double points[3][3];
@@ -139,7 +139,8 @@ static asj_vote judge_point(const frame_search *f, const double direction[3], do
 
 /* --- frames to try ----------------------------------------------------------------------------------------------------------- */
 
-/* The frame of two points. 0: they are not at right angles, with any focal length that can be. */
+/* The frame of two points. 0: they are not at right angles, with any focal length that can be, or once they are brought there, no
+ * more lines vote for them than define a frame. */
 static int32_t frame_of(const frame_search *f, const double p[3], const double q[3], trial *t)
 {
     double first[3], second[3];
@@ -159,7 +160,7 @@ static int32_t frame_of(const frame_search *f, const double p[3], const double q
     asj_normalise3(t->axes[2]);
     asj_cross3(t->axes[2], first, t->axes[1]);
     judge(f, t);
-    return 1;
+    return t->log_nfa < HUGE_VAL;
 }
 
 /* Keeps the best FOLLOWED in order; of equals the first. */

@@ -206,6 +206,45 @@ static void few_lines_of_a_direction_are_enough(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* What a function finds on the stack that has not written there: no number that can be. */
+static int32_t fill_stack(void)
+{
+    volatile unsigned char bytes[60000];
+    int32_t sum = 0;
+    for (size_t k = 0; k < sizeof bytes; k++) {
+        bytes[k] = 0x7f;
+        sum += bytes[k];
+    }
+    return sum;
+}
+
+/* Three lines and three others at 93 degrees to them: brought to right angles, no line votes for the second direction, and those of
+ * the first are as many as define a frame. */
+static void a_frame_without_votes_is_none(void **state)
+{
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_vanishing_options options;
+    asj_vanishing_points found;
+    asj_junction list[6];
+    (void)state;
+    memset(list, 0, sizeof list);
+    for (int32_t k = 0; k < 6; k++) {
+        list[k].x = (float)(k < 3 ? 40 + 150 * k : 100 + 200 * (k - 3));
+        list[k].y = (float)(k < 3 ? 60 + 170 * k : 30);
+        list[k].branch_count = 1;
+        list[k].branches[0] = (asj_branch){.angle = k < 3 ? 0 : (float)(93 * UNIT_PI / 180), .length = 120, .angle_sd = 0.004F};
+    }
+    asj_vanishing_options_init(&options);
+    options.width = 640;
+    options.height = 480;
+    options.camera = (asj_camera){500, 500, 319.5, 239.5};
+    assert_int_equal(fill_stack(), 60000 * 0x7f);
+    assert_int_equal(asj_find_vanishing_points(context, list, 6, &options, &found), ASJ_OK);
+    assert_int_equal(found.count, 0);
+    unit_context_free(&counter, &context);
+}
+
 /* Branches of any direction at any place: what is found is a false alarm; epsilon 0.01 allows none of 40 images, nearly always. */
 static void chance_has_no_directions(void **state)
 {
@@ -364,7 +403,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(near_points_are_one),
         cmocka_unit_test(a_focal_length_is_known_or_not),
-        cmocka_unit_test(few_lines_of_a_direction_are_enough), cmocka_unit_test(chance_has_no_directions),
+        cmocka_unit_test(few_lines_of_a_direction_are_enough), cmocka_unit_test(a_frame_without_votes_is_none),
+        cmocka_unit_test(chance_has_no_directions),
         cmocka_unit_test(bad_input_is_refused), cmocka_unit_test(it_can_be_cancelled),
         cmocka_unit_test(it_asks_all_the_time),
     };
