@@ -21,16 +21,16 @@ with_thread_sanitizer() {
 }
 
 with_memory_sanitizer() {
-    sanitized build-msan 'tests/soak/frames tests/fuzz/replay-detect tests/fuzz/replay-match tests/fuzz/replay-geometry' \
+    sanitized build-msan "tests/soak/frames $(printf 'tests/fuzz/replay-%s ' detect match geometry vanishing)" \
         -Db_sanitize=memory -Dthreads=enabled -Dopencl=disabled || return 1
     logged msan-frames "$root/build-msan/tests/soak/frames" 40 || return 1
-    for harness in detect:200 match:300 geometry:20; do
+    for harness in detect:200 match:300 geometry:20 vanishing:500; do
         logged "msan-${harness%:*}" "$root/build-msan/tests/fuzz/replay-${harness%:*}" "$root/tests/fuzz/corpus/${harness%:*}" \
             "${harness#*:}" || return 1
     done
 }
 
-all_harnesses='arguments detect match geometry features image junctions probe'
+all_harnesses='arguments detect match geometry vanishing features image junctions probe'
 
 # fuzz_one SECONDS HARNESS: leaves one line of what it did.
 fuzz_one() {
