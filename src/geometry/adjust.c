@@ -215,6 +215,12 @@ void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *li
     model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);
 }
 
+double asj_explained(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)
+{
+    asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
+    return asj_inliers(set, scratch->probability);
+}
+
 void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)
 {
     for (int32_t v = 0; v < 2; v++) {

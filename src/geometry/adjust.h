@@ -45,6 +45,9 @@ void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *li
 /* The normal matrix (information) of the model's parameters at the candidates' probabilities: parameters x parameters. */
 void asj_information(const asj_pairs *set, const asj_model *model, const double *probability, double *information);
 
+/* How many candidates it explains: the sum of their probabilities, which stand in the scratch then. */
+double asj_explained(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch);
+
 /* Of the four motions of an essential matrix the one with most probability in front of both cameras; what is behind counts BEHIND
  * times against it. Returns the balance. */
 double asj_choose_motion(const asj_pairs *set, const double *probability, asj_model *model);

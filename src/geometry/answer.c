@@ -181,8 +181,7 @@ static void describe(asj_estimation *e, int32_t number, asj_geometry *result)
     result->model = has_open_focal(e, number) ? ASJ_GEOMETRY_FUNDAMENTAL : m->kind;
     result->log10_nfa = asj_estimation_log10_nfa(e, m);
     set_matrix(m, result);
-    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
-    result->inliers = asj_inliers(&e->set, e->scratch.probability);
+    result->inliers = asj_explained(&e->set, m, &e->scratch);
 }
 
 /* Whether the motion that was asked for stays open. */

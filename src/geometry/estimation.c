@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The best finalist, and how often chance brings one: NFA = kinds that were tried x searches x exp(-evidence).
+/* What is searched, the best finalist, and how often chance brings one: NFA = kinds that were tried x searches x exp(-evidence).
  *
  * Where that leaves it open, it counts how well the pictures agree (picture_agreement.c), since few geometries of unrelated rooms
  * have pictures that agree with them: of 114 with a log10 NFA from -1 to -130 of which pictures know something 4 have a share
@@ -9,10 +9,16 @@
 #include "estimation.h"
 #include "geometry_options.h"
 #include "posterior.h"
+#include "pure_rotation.h"
 #include "core/decade.h"
 
 #include <math.h>
 
+/* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
+ * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
+#define GIVE_UP 17.0
+
+#define MORE_SAMPLES 2 /* of the second search over the first */
 #define UNUSUAL 0.5
 #define BY_SHARE 15.0
 
@@ -41,6 +47,20 @@ const asj_camera *asj_estimation_cameras(const asj_estimation *e)
     return asj_cameras_are_known(e->options) ? e->options->cameras : NULL;
 }
 
+asj_search asj_estimation_plan(const asj_estimation *e, int32_t kind, int32_t again)
+{
+    const asj_geometry_options *o = e->options;
+    const asj_camera *known = asj_estimation_cameras(e), *cameras = known ? known : o->cameras;
+    asj_search search = {kind, again ? MORE_SAMPLES * o->samples : o->samples, again ? ~o->seed : o->seed, {cameras[0], cameras[1]},
+                         GIVE_UP - log(o->epsilon), NULL, 0};
+    for (int32_t v = 0; v < 2; v++)
+        if (!asj_camera_is_known(&search.cameras[v])) {
+            const double aspect = o->aspects[v], longer = fmax(o->widths[v], o->heights[v] / aspect);
+            search.cameras[v] = (asj_camera){longer, longer * aspect, 0.5 * (o->widths[v] - 1), 0.5 * (o->heights[v] - 1)};
+        }
+    return search;
+}
+
 asj_status asj_estimation_refocus(asj_estimation *e, int32_t number)
 {
     asj_focal found;
@@ -51,6 +71,12 @@ asj_status asj_estimation_refocus(asj_estimation *e, int32_t number)
     e->focal_at = number;
     e->finalists[number] = found.model;
     return ASJ_OK;
+}
+
+int32_t asj_estimation_is_outdone(asj_estimation *e, const asj_model *rotation)
+{
+    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL);
+    return best < 0 || asj_rotation_outdoes(&e->set, rotation, &e->finalists[best], &e->scratch);
 }
 
 asj_status asj_estimation_settle(const asj_estimation *e, asj_model *model)

@@ -43,6 +43,10 @@ typedef struct asj_estimation {
 /* Both cameras as they are known, or have become known with the focal length; NULL = they are not. */
 const asj_camera *asj_estimation_cameras(const asj_estimation *e);
 
+/* The search for a kind. Cameras that are not known have the longer side as focal length, of the image as it is with square pixels.
+ * `again`: with other samples, and more. */
+asj_search asj_estimation_plan(const asj_estimation *e, int32_t kind, int32_t again);
+
 /* Makes another finalist with the focal length the one that tells it. ASJ_ERROR_MEMORY. */
 asj_status asj_estimation_refocus(asj_estimation *e, int32_t number);
 
@@ -57,6 +61,9 @@ int32_t asj_estimation_best(const asj_estimation *e, int32_t kind);
 
 /* .. of a camera that only turns. */
 int32_t asj_estimation_best_rotation(const asj_estimation *e);
+
+/* Does a camera that only turns explain more than any motion among the finalists, and the same matches? Only then it is one. */
+int32_t asj_estimation_is_outdone(asj_estimation *e, const asj_model *rotation);
 
 /* log10 of how many such geometries chance brings. */
 double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m);

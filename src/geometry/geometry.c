@@ -5,7 +5,7 @@
  *   search.c      samples (minimal.c, five_point.c), scores (likelihood.c), refinement (adjust.c)
  *   motions.c     essential matrices with planes (planes.c), and what the candidates allow around them (posterior.c)
  *   pure_rotation.c  a camera that only turns
- *   focal.c       the same for a row of focal lengths (focal_prior.c, focal_profile.c), where none is known and it is asked for
+ *   focal_finalists.c  the same for a row of focal lengths (focal.c), where none is known and it is asked for
  *   rivals.c      what explains as much without the candidates of the best one
  *   tiled_motions.c  where a floor of tiles may have been matched with other tiles: motions that see these
  *   evidence.c    how often chance brings as much
@@ -17,7 +17,7 @@
 #include "answer.h"
 #include "estimate.h"
 #include "estimation.h"
-#include "evidence.h"
+#include "focal_finalists.h"
 #include "geometry_options.h"
 #include "motions.h"
 #include "pairs.h"
@@ -30,61 +30,13 @@
 #include <math.h>
 #include <string.h>
 
-/* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
- * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
-#define GIVE_UP 17.0
-
-#define MORE_SAMPLES 2 /* of the second search over the first */
-#define WORTH_A_LOOK 0.6 /* of a motion's evidence, that of a homography which may be a rotation */
-#define LOST 6.0         /* of a motion's matches, which some wrong ones suit as well, a camera that only turns may lose so many, */
-#define LOST_SHARE 0.15  /* or such a part */
-
-/* Cameras that are not known have the longer side as focal length, of the image as it is with square pixels. `again`: with other
- * samples, and more. */
-static asj_search plan(const asj_estimation *e, int32_t kind, int32_t again)
-{
-    const asj_geometry_options *o = e->options;
-    const asj_camera *known = asj_estimation_cameras(e), *cameras = known ? known : o->cameras;
-    asj_search search = {kind, again ? MORE_SAMPLES * o->samples : o->samples, again ? ~o->seed : o->seed, {cameras[0], cameras[1]},
-                         GIVE_UP - log(o->epsilon), NULL, 0};
-    for (int32_t v = 0; v < 2; v++)
-        if (!asj_camera_is_known(&search.cameras[v])) {
-            const double aspect = o->aspects[v], longer = fmax(o->widths[v], o->heights[v] / aspect);
-            search.cameras[v] = (asj_camera){longer, longer * aspect, 0.5 * (o->widths[v] - 1), 0.5 * (o->heights[v] - 1)};
-        }
-    return search;
-}
-
 static asj_status search_kind(asj_estimation *e, int32_t kind, int32_t again)
 {
-    const asj_search search = plan(e, kind, again);
+    const asj_search search = asj_estimation_plan(e, kind, again);
     int32_t count = 0;
     const asj_status status = asj_geometry_search(e->context, &e->set, &search, e->finalists + e->count, &count);
     e->count += count;
     return status;
-}
-
-static double inliers_of(asj_estimation *e, const asj_model *m)
-{
-    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
-    return asj_inliers(&e->set, e->scratch.probability);
-}
-
-/* Does a camera that only turns explain more than any motion, and the same matches? Only then it is a finalist: what says where a
- * match is has more evidence for each than what says on which line, and may so outweigh a motion that explains more of them. (Of
- * 100 rooms whose camera turns it loses 4.7 of 52 at most, of 15 up to 4.6, of a rendered panorama 27 of 248; of 60 matches with a
- * parallax of 25 px 12 to 16.) */
-static int32_t outdoes_motions(asj_estimation *e, const asj_model *rotation)
-{
-    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL);
-    if (best < 0)
-        return 1;
-    const asj_model *motion = &e->finalists[best];
-    if (!(rotation->evidence > motion->evidence))
-        return 0;
-    const double has = inliers_of(e, motion), lost = has - inliers_of(e, rotation);
-    return lost < fmax(LOST, LOST_SHARE * has) &&
-           rotation->evidence > motion->evidence + asj_gain_of_thick_planes(&e->set, motion, &e->scratch);
 }
 
 static asj_status search_pure_rotation(asj_estimation *e, const asj_camera cameras[2])
@@ -94,67 +46,9 @@ static asj_status search_pure_rotation(asj_estimation *e, const asj_camera camer
     asj_status status = asj_find_pure_rotation(e->context, &e->set, cameras, e->finalists, e->count, rotation, &found);
     if (status == ASJ_OK && found)
         status = asj_estimation_settle(e, rotation);
-    if (status == ASJ_OK && found && rotation->settled && outdoes_motions(e, rotation))
+    if (status == ASJ_OK && found && rotation->settled && asj_estimation_is_outdone(e, rotation))
         e->count++;
     return status;
-}
-
-/* The same where a focal length is looked for: where homographies explain anything like as much as the motion that was found. */
-static asj_status search_focal_of_rotation(asj_estimation *e, const asj_model *flat, int32_t count)
-{
-    const asj_model *rotation = &e->rotation_focal.model;
-    double most = -HUGE_VAL;
-    for (int32_t k = 0; k < count; k++)
-        most = fmax(most, flat[k].evidence);
-    if (!(most > WORTH_A_LOOK * e->focal.model.evidence))
-        return ASJ_OK;
-    asj_status status = asj_find_focal_of_rotation(e->focal_search, flat, count, &e->focal.model, &e->rotation_focal);
-    if (status == ASJ_OK)
-        status = asj_focal_search_turn(e->focal_search, &e->focal); /* back */
-    if (status != ASJ_OK || !e->rotation_focal.is_known || !rotation->settled || !outdoes_motions(e, rotation))
-        return status;
-    e->finalists[e->count++] = *rotation;
-    return asj_focal_search_turn(e->focal_search, &e->rotation_focal);
-}
-
-/* Homographies that are no finalists themselves, where only motions are asked for. */
-static asj_status search_flat(asj_estimation *e, asj_model flat[ASJ_FINALISTS], int32_t *count)
-{
-    const asj_search search = plan(e, ASJ_GEOMETRY_HOMOGRAPHY, 0);
-    return asj_geometry_search(e->context, &e->set, &search, flat, count);
-}
-
-static int32_t with_homographies(const asj_geometry_options *o)
-{
-    return o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY;
-}
-
-/* One focal length for both, in place of cameras or near theirs: a motion that tells it, and the others that there are with it. */
-static asj_status search_focal(asj_estimation *e, const asj_geometry_hints *hints)
-{
-    const asj_search search = plan(e, ASJ_GEOMETRY_ESSENTIAL, 0);
-    const double sd = e->options->focal_sd;
-    asj_model flat[ASJ_FINALISTS];
-    int32_t count = 0, more = 0;
-    for (int32_t k = 0; k < e->count && count < ASJ_FINALISTS; k++)
-        if (e->finalists[k].kind == ASJ_GEOMETRY_HOMOGRAPHY)
-            flat[count++] = e->finalists[k];
-    const int32_t starts = count;
-    asj_status status = asj_focal_search_create(e->context, &e->set, hints, &search, sd, &e->focal_search);
-    if (status == ASJ_OK && !with_homographies(e->options))
-        status = search_flat(e, flat, &count);
-    if (status == ASJ_OK) {
-        asj_focal_search_flat(e->focal_search, flat, count);
-        status = asj_find_focal(e->focal_search, flat, starts, &e->focal);
-    }
-    if (status != ASJ_OK || !(e->focal.model.evidence > -HUGE_VAL))
-        return status;
-    e->focal_at = e->count;
-    e->finalists[e->count++] = e->focal.model;
-    if (e->focal.is_known)
-        status = asj_find_with_focal(e->focal_search, &e->focal, flat, starts, e->finalists + e->count, &more);
-    e->count += more;
-    return status == ASJ_OK ? search_focal_of_rotation(e, flat, count) : status;
 }
 
 /* What is searched: the kind with epipolar lines, ASJ_GEOMETRY_NONE for none; and homographies? */
@@ -180,7 +74,7 @@ static asj_status search_kinds(asj_estimation *e, int32_t again)
     e->count = 0;
     if (motions || epipolar == ASJ_GEOMETRY_FUNDAMENTAL)
         status = search_kind(e, epipolar, again);
-    if (status == ASJ_OK && with_homographies(o))
+    if (status == ASJ_OK && asj_asks_homographies(o))
         status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY, again);
     if (status == ASJ_OK && motions)
         status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, ASJ_SETTLED, e->finalists, &e->count);
@@ -195,7 +89,7 @@ static asj_status search_all(asj_estimation *e, const asj_geometry_hints *hints)
     asj_status status = search_kinds(e, 0);
     if (status == ASJ_OK && !finds_focal && is_chance(e, asj_estimation_best(e, ASJ_GEOMETRY_AUTO)))
         status = search_kinds(e, 1);
-    return status == ASJ_OK && finds_focal ? search_focal(e, hints) : status;
+    return status == ASJ_OK && finds_focal ? asj_find_focal_finalists(e, hints) : status;
 }
 
 /* `more` that stand behind the finalists become some of them. */
@@ -221,9 +115,9 @@ static asj_status search_rivals(asj_estimation *e)
     if (!asj_estimation_counts(e, best))
         return ASJ_OK;
     if (epipolar != ASJ_GEOMETRY_NONE)
-        kinds[kind_count++] = plan(e, epipolar, 0);
-    if (with_homographies(e->options))
-        kinds[kind_count++] = plan(e, ASJ_GEOMETRY_HOMOGRAPHY, 0);
+        kinds[kind_count++] = asj_estimation_plan(e, epipolar, 0);
+    if (asj_asks_homographies(e->options))
+        kinds[kind_count++] = asj_estimation_plan(e, ASJ_GEOMETRY_HOMOGRAPHY, 0);
     if (epipolar != ASJ_GEOMETRY_ESSENTIAL)
         cameras = NULL;
     const asj_status status = asj_find_rivals(e->context, &e->set, kinds, kind_count, cameras, &e->finalists[best],

@@ -46,6 +46,11 @@ int32_t asj_cameras_are_known(const asj_geometry_options *options)
     return asj_camera_is_known(&options->cameras[0]) && asj_camera_is_known(&options->cameras[1]);
 }
 
+int32_t asj_asks_homographies(const asj_geometry_options *options)
+{
+    return options->model == ASJ_GEOMETRY_AUTO || options->model == ASJ_GEOMETRY_HOMOGRAPHY;
+}
+
 int32_t asj_finds_focal(const asj_geometry_options *options)
 {
     const int32_t asked = options->find_focal || (asj_cameras_are_known(options) && options->focal_sd >= LEAST_FOCAL_SD);

@@ -16,6 +16,9 @@ int32_t asj_camera_can_be(const asj_camera *camera);
 int32_t asj_camera_is_known(const asj_camera *camera);
 int32_t asj_cameras_are_known(const asj_geometry_options *options); /* both, exactly or about */
 
+/* Are homographies finalists? */
+int32_t asj_asks_homographies(const asj_geometry_options *options);
+
 /* One focal length is found with the motion: nothing is known of it, or the cameras' are about right. */
 int32_t asj_finds_focal(const asj_geometry_options *options);
 

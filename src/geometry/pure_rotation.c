@@ -22,6 +22,8 @@
 #define MOST_STARTS 8 /* of either kind */
 #define FORMS 2
 #define ROUNDS 6
+#define LOST 6.0        /* of a motion's matches, which some wrong ones suit as well, a camera that only turns may lose so many, */
+#define LOST_SHARE 0.15 /* or such a part */
 
 typedef struct job {
     const asj_pairs *set;
@@ -51,7 +53,8 @@ double asj_far_from_rotation(const asj_model *homography, const asj_camera camer
     return s[2] > 0 && isfinite(s[0]) ? log(s[0] / s[2]) : HUGE_VAL;
 }
 
-double asj_gain_of_thick_planes(const asj_pairs *set, const asj_model *motion, asj_adjust_scratch *scratch)
+/* What a motion's evidence gains when its planes are as thick as errors of locations; 0 at least. */
+static double gain_of_thick_planes(const asj_pairs *set, const asj_model *motion, asj_adjust_scratch *scratch)
 {
     asj_model thick = *motion;
     thick.thick = 1;
@@ -59,6 +62,18 @@ double asj_gain_of_thick_planes(const asj_pairs *set, const asj_model *motion, a
         return 0;
     asj_adjust_like(set, &thick, motion, ROUNDS, scratch);
     return fmax(0, asj_log_evidence(set, &thick, scratch) - asj_log_evidence(set, motion, scratch));
+}
+
+/* What says where a match is has more evidence for each than what says on which line, and may so outweigh a motion that explains
+ * more of them. So it may lose few. (Of 100 rooms whose camera turns it loses 4.7 of 52 at most, of 15 up to 4.6, of a rendered
+ * panorama 27 of 248; of 60 matches with a parallax of 25 px 12 to 16.) */
+int32_t asj_rotation_outdoes(const asj_pairs *set, const asj_model *rotation, const asj_model *motion, asj_adjust_scratch *scratch)
+{
+    if (!(rotation->evidence > motion->evidence))
+        return 0;
+    const double has = asj_explained(set, motion, scratch), lost = has - asj_explained(set, rotation, scratch);
+    return lost < fmax(LOST, LOST_SHARE * has) &&
+           rotation->evidence > motion->evidence + gain_of_thick_planes(set, motion, scratch);
 }
 
 static int32_t collect(const asj_camera cameras[2], const asj_model *models, int32_t count, asj_model *starts)

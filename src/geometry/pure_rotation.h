@@ -11,8 +11,8 @@
 asj_status asj_find_pure_rotation(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], const asj_model *models,
                                   int32_t count, asj_model *rotation, int32_t *found);
 
-/* What a motion's evidence gains when its planes are as thick as errors of locations; 0 at least. */
-double asj_gain_of_thick_planes(const asj_pairs *set, const asj_model *motion, asj_adjust_scratch *scratch);
+/* Does a camera that only turns explain more than a motion, and the same matches? */
+int32_t asj_rotation_outdoes(const asj_pairs *set, const asj_model *rotation, const asj_model *motion, asj_adjust_scratch *scratch);
 
 /* How far a homography between these cameras is from a rotation: log of the largest over the smallest singular value of
  * K2^-1 H K1, 0 for a rotation. */
