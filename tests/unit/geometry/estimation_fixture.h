@@ -27,6 +27,30 @@ static asj_estimation *create_estimation(asj_context *context, const asj_geometr
     return e;
 }
 
+/* Grey levels of image `which`, 0 or 1. */
+typedef void paint_channel(int32_t which, int32_t channel, int32_t contrast, uint8_t *pixels);
+
+/* Both pictures in so many channels, of those contrasts; 0: nobody shows them. */
+static void show_pictures(asj_context *context, asj_estimation *e, int32_t channels, const int32_t *contrasts, paint_channel *paint)
+{
+    const int32_t *widths = e->options->widths, *heights = e->options->heights;
+    asj_picture of[2];
+    for (int32_t k = 0; k < 2; k++) {
+        uint8_t *pixels = asj_allocate(&context->memory, (size_t)widths[k], (size_t)heights[k]);
+        assert_non_null(pixels);
+        of[k] = (asj_picture){.channel_count = channels, .scale = 1, .width = widths[k], .height = heights[k]};
+        for (int32_t c = 0; c < channels; c++) {
+            const asj_image image = {pixels, ASJ_FORMAT_GRAY8, widths[k], heights[k], 0, 0};
+            paint(k, c, contrasts[c], pixels);
+            assert_int_equal(asj_pyramid_create(context, &image, 0.8, &pyramids[k][c]), ASJ_OK);
+            of[k].channels[c] = &pyramids[k][c];
+        }
+        asj_release(&context->memory, pixels);
+    }
+    e->pictures = channels > 0 ? asj_pictures_create(&context->memory, of, e->set.count) : NULL;
+    assert_true(e->pictures || channels == 0);
+}
+
 static void release_estimation(asj_context *context, asj_estimation *e)
 {
     for (int32_t k = 0; k < 2 * ASJ_MOST_CHANNELS; k++)

@@ -105,11 +105,11 @@ static void test_sure_rival_makes_ambiguous(void **state)
 }
 
 /* A wall of tiles whose levels differ by up to `contrast`, the second picture with another exposure. */
-static void paint(int32_t which, uint64_t seed, int32_t contrast, uint8_t *pixels)
+static void paint(int32_t which, int32_t channel, int32_t contrast, uint8_t *pixels)
 {
     synth_random random;
     int32_t level[WIDTH / TILE * HEIGHT / TILE];
-    synth_random_seed(&random, seed);
+    synth_random_seed(&random, 7 + (uint64_t)channel);
     for (size_t k = 0; k < sizeof level / sizeof *level; k++)
         level[k] = (int32_t)synth_random_between(&random, 100, 100 + contrast);
     for (int32_t y = 0; y < HEIGHT; y++)
@@ -119,30 +119,12 @@ static void paint(int32_t which, uint64_t seed, int32_t contrast, uint8_t *pixel
         }
 }
 
-/* A wall in so many channels, of those contrasts. */
-static void show(asj_context *context, asj_estimation *e, int32_t channels, const int32_t *contrasts)
-{
-    static uint8_t pixels[WIDTH * HEIGHT];
-    asj_picture of[2];
-    for (int32_t k = 0; k < 2; k++) {
-        of[k] = (asj_picture){.channel_count = channels, .scale = 1, .width = WIDTH, .height = HEIGHT};
-        for (int32_t c = 0; c < channels; c++) {
-            const asj_image image = {pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
-            paint(k, 7 + (uint64_t)c, contrasts[c], pixels);
-            assert_int_equal(asj_pyramid_create(context, &image, 0.8, &pyramids[k][c]), ASJ_OK);
-            of[k].channels[c] = &pyramids[k][c];
-        }
-    }
-    e->pictures = asj_pictures_create(&context->memory, of, e->set.count);
-    assert_non_null(e->pictures);
-}
-
 /* Is the second geometry a rival when the pictures are looked at? Is the first one, when that one is called the best? */
 static void ask(asj_context *context, int32_t channels, const int32_t *contrasts, int32_t rivals[2])
 {
     asj_geometry_options options;
     asj_estimation *e = prepare(context, TILE, &options);
-    show(context, e, channels, contrasts);
+    show_pictures(context, e, channels, contrasts, paint);
     for (int32_t best = 0; best < 2; best++) {
         int32_t doubt;
         rivals[best] = asj_strongest_rival(e, best, &doubt);
@@ -189,7 +171,7 @@ static void test_wrong_one_is_struck_out(void **state)
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_geometry_options options;
         asj_estimation *e = prepare(context, TILE, &options);
-        show(context, e, 1, &contrast);
+        show_pictures(context, e, 1, &contrast, paint);
         e->finalists[1].evidence = cases[k].evidence;
         assert_int_equal(asj_strike_out(e), ASJ_OK);
         assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), 0);
@@ -211,7 +193,7 @@ static void test_wrong_one_alone_is_struck_out(void **state)
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_geometry_options options;
         asj_estimation *e = prepare(context, TILE, &options);
-        show(context, e, 1, &cases[k].contrast);
+        show_pictures(context, e, 1, &cases[k].contrast, paint);
         e->finalists[0] = shifted_by(cases[k].shift);
         e->finalists[0].evidence = cases[k].evidence;
         e->count = 1;
@@ -239,7 +221,7 @@ static void test_agreement_is_unusual(void **state)
         e->finalists[0].evidence = evidence;
         assert_int_equal(asj_estimation_counts(e, 0), asj_estimation_log10_nfa(e, &e->finalists[0]) <= -7);
     }
-    show(context, e, 1, &contrast);
+    show_pictures(context, e, 1, &contrast, paint);
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         const asj_agreement agreement = {cases[k].share, cases[k].known};
         assert_true(fabs(asj_estimation_log10_agreement(agreement) + cases[k].decades) < 1e-9);

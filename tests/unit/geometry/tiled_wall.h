@@ -90,16 +90,16 @@ static asj_model wrong_motion(int32_t way, double evidence)
 }
 
 /* Which of the levels a tile has in a channel: every other row of the lower half repeats. */
-static int32_t level_of(int32_t column, int32_t row, uint32_t channel, int32_t contrast)
+static int32_t level_of(int32_t column, int32_t row, int32_t channel, int32_t contrast)
 {
     synth_random random;
     const int32_t repeats = row >= ROWS / 2 && row % 2 == 0;
     const int32_t number = repeats ? column % PERIOD : column;
-    synth_random_seed(&random, 1 + channel + 8 * (uint64_t)(row + ROWS * (number + PERIOD)));
+    synth_random_seed(&random, 1 + (uint64_t)channel + 8 * (uint64_t)(row + ROWS * (number + PERIOD)));
     return (int32_t)synth_random_between(&random, 100, 100 + contrast);
 }
 
-static void paint(int32_t which, uint32_t channel, int32_t contrast, uint8_t *pixels)
+static void paint(int32_t which, int32_t channel, int32_t contrast, uint8_t *pixels)
 {
     for (int32_t y = 0; y < HEIGHT; y++)
         for (int32_t x = 0; x < WIDTH; x++) {
@@ -108,28 +108,11 @@ static void paint(int32_t which, uint32_t channel, int32_t contrast, uint8_t *pi
         }
 }
 
-/* The wall in so many channels; 0: nobody shows it. */
-static void show(asj_context *context, asj_estimation *e, int32_t channels, int32_t contrast)
-{
-    static uint8_t pixels[WIDTH * HEIGHT];
-    asj_picture of[2];
-    for (int32_t k = 0; k < 2; k++) {
-        of[k] = (asj_picture){.channel_count = channels, .scale = 1, .width = WIDTH, .height = HEIGHT};
-        for (int32_t c = 0; c < channels; c++) {
-            const asj_image image = {pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
-            paint(k, (uint32_t)c, contrast, pixels);
-            assert_int_equal(asj_pyramid_create(context, &image, 0.8, &pyramids[k][c]), ASJ_OK);
-            of[k].channels[c] = &pyramids[k][c];
-        }
-    }
-    e->pictures = channels > 0 ? asj_pictures_create(&context->memory, of, e->set.count) : NULL;
-    assert_true(e->pictures || channels == 0);
-}
-
-/* An estimation that has found nothing yet. */
+/* An estimation that has found nothing yet, and is shown the wall in so many channels; 0: nobody shows it. */
 static asj_estimation *create_tiled(asj_context *context, int32_t way, int32_t channels, int32_t contrast,
                                     asj_geometry_options *options)
 {
+    const int32_t contrasts[ASJ_MOST_CHANNELS] = {contrast, contrast, contrast};
     asj_geometry_candidate list[PLACES];
     asj_geometry_options_init(options);
     for (int32_t v = 0; v < 2; v++) {
@@ -139,7 +122,7 @@ static asj_estimation *create_tiled(asj_context *context, int32_t way, int32_t c
     }
     make_candidates(way, list);
     asj_estimation *e = create_estimation(context, list, PLACES, options);
-    show(context, e, channels, contrast);
+    show_pictures(context, e, channels, contrasts, paint);
     return e;
 }
 
