@@ -14,8 +14,7 @@ enum { BACKEND, DEVICE, THREADS, SIMD, MAX_MEGAPIXELS, WHITE, TIME, QUIET };
 /* The largest image that asj_detect() takes. */
 #define MAX_MEGAPIXELS_LIMIT (ASJ_MAX_PIXELS / 1e6)
 
-#define LEAST_WHITE 1e-6 /* floats may have any unit */
-#define LARGEST_WHITE 1e9
+#define LEAST_WHITE 1e-6
 
 const cli_option cli_common_options[] = {
     {BACKEND, 0, "backend", "auto|cpu|opencl",
@@ -84,8 +83,8 @@ static int take_max_megapixels(cli_common *common, const char *text)
 
 static int take_white(cli_common *common, const char *text)
 {
-    if (!cli_parse_number(text, LEAST_WHITE, LARGEST_WHITE, &common->white))
-        return cli_usage_error(common->command, "--white: '%s' is not a number in %g .. %g", text, LEAST_WHITE, LARGEST_WHITE);
+    if (!cli_parse_number(text, LEAST_WHITE, CLI_LARGEST_WHITE, &common->white))
+        return cli_usage_error(common->command, "--white: '%s' is not a number in %g .. %g", text, LEAST_WHITE, CLI_LARGEST_WHITE);
     return CLI_SUCCESS;
 }
 

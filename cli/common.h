@@ -13,6 +13,9 @@
 /* What --max-megapixels goes up to: the largest image that asj_detect() takes. */
 #define CLI_LARGEST_MEGAPIXELS 536
 
+/* What --white goes up to: floats may have any unit. */
+#define CLI_LARGEST_WHITE 1e9
+
 typedef struct cli_common {
     const char *command; /* that they were given to: "detect" */
     int32_t backend;

@@ -183,17 +183,22 @@ uint32_t cli_likely_white(uint32_t level)
     return white;
 }
 
-double cli_likely_float_white(double level)
+void cli_advise_white(double level, char *text, size_t size)
 {
     double white = 255;
     while (white < level)
         white = 2 * white + 1;
-    return white;
+    if (white <= CLI_LARGEST_WHITE)
+        snprintf(text, size, "--white %.10g?", white);
+    else
+        snprintf(text, size, "up to %.3g, and --white goes up to %g", level, CLI_LARGEST_WHITE);
 }
 
 void cli_note_bright(const char *name, double level)
 {
-    cli_note("%s: most pixels are brighter than white, 1 in floats: --white %.10g?", name, cli_likely_float_white(level));
+    char advice[64];
+    cli_advise_white(level, advice, sizeof advice);
+    cli_note("%s: most pixels are brighter than white, 1 in floats: %s", name, advice);
 }
 
 void cli_note_dark(const char *name, uint32_t level)

@@ -25,9 +25,11 @@ uint32_t cli_dark_level(const asj_image *image);
  * or its white was given. Samples of 0 to 255 are such images. */
 double cli_bright_level(const asj_image *image);
 
-/* The white of samples whose brightest level this is: 1023, 4095; of floats from 255 on. */
+/* The white of samples whose brightest level this is: 1023, 4095. */
 uint32_t cli_likely_white(uint32_t level);
-double cli_likely_float_white(double level);
+
+/* What may help floats whose brightest level this is: "--white 255?", or that it does not go so far. */
+void cli_advise_white(double level, char *text, size_t size);
 
 /* Say so of an image, with what may help. */
 void cli_note_dark(const char *name, uint32_t level);

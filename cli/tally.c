@@ -41,7 +41,7 @@ void cli_tally_image(cli_tally *tally, const char *name, const asj_image *image,
 void cli_tally_print(const cli_tally *tally, const asj_detect_options *options, const char *file)
 {
     const int named = file && strcmp(file, "-") != 0;
-    char failed[48] = "", bare[160] = "", dark[96] = "", bright[96] = "";
+    char failed[48] = "", bare[160] = "", dark[96] = "", bright[160] = "", advice[64];
     if (tally->failed > 0)
         snprintf(failed, sizeof failed, ", %zu failed", tally->failed);
     if (tally->bare > 0)
@@ -49,9 +49,9 @@ void cli_tally_print(const cli_tally *tally, const asj_detect_options *options, 
     if (tally->dark > 0)
         snprintf(dark, sizeof dark, ", %zu far darker than white (--white %lu?)", tally->dark,
                  (unsigned long)cli_likely_white(tally->dark_level));
+    cli_advise_white(tally->bright_level, advice, sizeof advice);
     if (tally->bright > 0)
-        snprintf(bright, sizeof bright, ", %zu with most pixels brighter than white (--white %.10g?)", tally->bright,
-                 cli_likely_float_white(tally->bright_level));
+        snprintf(bright, sizeof bright, ", %zu with most pixels brighter than white (%s)", tally->bright, advice);
     cli_note("%zu image%s done%s%s%s%s%s%s", tally->done, tally->done == 1 ? "" : "s", failed, bare, dark, bright,
              named ? " -> " : "", named ? file : "");
 }

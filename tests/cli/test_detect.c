@@ -572,6 +572,11 @@ static void white_of_floats_can_be_told(void **state)
     result = run_cli("match", "bytes.pfm", "unit.pfm", NULL);
     expect_in(result, result->err, "bytes.pfm: most pixels are brighter than white");
     assert_null(strstr(result->err, "hint"));
+    write_float_scene("huge.pfm", 1e38F); /* no white that the option takes */
+    result = run_cli("detect", "huge.pfm", NULL);
+    expect_in(result, result->err, "white, 1 in floats: up to 9.5e+37, and --white goes up to 1e+09\n");
+    result = run_cli("detect", "-d", "floats", "huge.pfm", "unit.pfm", NULL);
+    expect_in(result, result->err, "brighter than white (up to 9.5e+37, and --white goes up to 1e+09)\n");
 }
 
 /* Colours of 16 bits are read as grey levels: who asks for them is told, once. */
