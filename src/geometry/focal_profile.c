@@ -36,6 +36,7 @@
 #define KNOWN 0.1
 #define LEAST_SD 0.01
 #define LENS 0.015
+#define LEAST_VARIANCE 1e-12 /* of log f: where one step has all the weight rounding may leave less than none */
 #define SMALL 0.02 /* of log f: a step that a path does not jump in */
 #define ROUNDS 5
 #define LEAST_SHARE (-3.0) /* below that directions are left out: labels (labels.c) would count in full */
@@ -237,7 +238,7 @@ static summary summarize(asj_focal_profile *p)
         second += weight * x * x;
     }
     s.mean = log(factor_of(p, &p->at[REACH])) + first / sum;
-    s.variance = second / sum - first / sum * (first / sum);
+    s.variance = fmax(LEAST_VARIANCE, second / sum - first / sum * (first / sum));
     s.mean_weight = log(sum * p->step / asj_focal_range(p->prior));
     s.is_cut = p->at[lowest].evidence > most - CLOSE || p->at[highest].evidence > most - CLOSE;
     return s;
