@@ -23,9 +23,10 @@
  * square again, and those at 10 and 40 degrees are off by less than two times (the tilts of ASIFT, Morel and Yu 2009, go by sqrt 2
  * up to 5.7, as descriptors want them; here the patches follow the junctions, and one is enough).
  *
- * Each of the two is tried first on half of the pixels to either side, one octave and without a geometry: where the stretch helps,
- * a quarter or more of its matches are there (two magazines at extreme angles: 42 of 113, 49 of 194), in an eighth of the time,
- * and where the images have nothing in common that is answered at once (match/related.c).
+ * Each of the two is tried first on TRIAL_PIXELS, half of them to either side at most, one octave and without a geometry: where the
+ * stretch helps, a tenth or more of its matches are there (two magazines at extreme angles: 16 of 113, 16 of 197; on four times as
+ * many pixels 41 and 55), in a thirtieth of the time, and where the images have nothing in common that is answered at once
+ * (match/related.c).
  *
  * Colours. Where a geometry is asked, and neither look has one that is sure, agrees with the pictures and tells a motion, the
  * detector looks at colours, too (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright
@@ -56,6 +57,7 @@
                     * is, 6 of them wrong, 720 right ones of 721 stretched) */
 #define MANY 8     /* matches beside a geometry that is chance: worth another one */
 #define HINT 6     /* matches of the trial. On one octave false ones are rarer; the whole look decides */
+#define TRIAL_PIXELS 60000.0 /* of the smaller image, stretched, in the trial */
 #define FIRST 0.2  /* of all the progress, for the look as they are, */
 #define CLOSER 0.4 /* .. and for the upsampled one */
 #define COLOURED 0.2 /* .. and for the colours */
@@ -65,7 +67,7 @@
 #define WHOLE 0.3  /* .. before the upsampled look */
 
 static const asj_stretch as_it_is = {1, 1};
-static const asj_stretch glancing[] = {{1, 3}, {3, 1}}, trials[] = {{0.5, 1.5}, {1.5, 0.5}};
+static const asj_stretch glancing[] = {{1, 3}, {3, 1}};
 enum { GLANCING = sizeof glancing / sizeof glancing[0] };
 
 typedef struct search {
@@ -170,6 +172,12 @@ static double pixels_of(const asj_image *image)
     return (double)image->width * image->height;
 }
 
+/* Of the smaller image. */
+static double least_pixels(const search *s)
+{
+    return fmin(pixels_of(s->images[0]), pixels_of(s->images[1]));
+}
+
 /* Who asks for one octave, or for another first one, has decided. */
 static int32_t may_choose_scale(const search *s)
 {
@@ -208,7 +216,7 @@ static asj_status look_closer(search *s, const asj_stretch *stretch, double from
 /* As long as the smaller one of them has more than LARGEST pixels it has some to spare. */
 static double scale_of(const search *s)
 {
-    const double pixels = fmin(pixels_of(s->images[0]), pixels_of(s->images[1]));
+    const double pixels = least_pixels(s);
     double scale = 1;
     while (may_choose_scale(s) && pixels * scale * scale > LARGEST)
         scale *= 0.5;
@@ -283,6 +291,13 @@ static asj_stretch scaled(const search *s, const asj_stretch *stretch)
     return (asj_stretch){s->scale * stretch->x, s->scale * stretch->y};
 }
 
+/* The same stretch on fewer pixels. */
+static asj_stretch trial_of(const search *s, const asj_stretch *stretch)
+{
+    const double part = fmin(0.5, sqrt(TRIAL_PIXELS / (least_pixels(s) * stretch->x * stretch->y)));
+    return (asj_stretch){part * stretch->x, part * stretch->y};
+}
+
 static asj_status try_stretch(search *s, const asj_stretch *stretch, double from, double part, int32_t *hopeful)
 {
     asj_detect_options one_octave = *s->detect_options;
@@ -302,7 +317,7 @@ static asj_status try_stretch(search *s, const asj_stretch *stretch, double from
 static asj_status look_again(search *s, int32_t which, double from, double part)
 {
     const double more = s->detect_options->first_octave < 0 ? 2 : 1; /* the detector upsamples them once more */
-    const asj_stretch stretch = scaled(s, &glancing[which]), trial = scaled(s, &trials[which]);
+    const asj_stretch stretch = scaled(s, &glancing[which]), trial = trial_of(s, &stretch);
     const asj_stretch largest = {more * stretch.x, more * stretch.y};
     asj_match_result *found = NULL;
     int32_t hopeful = 0;
