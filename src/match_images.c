@@ -31,7 +31,7 @@
  * Colours. Where a geometry is asked, and neither look has one that is sure, agrees with the pictures and tells a motion, the
  * detector looks at colours, too (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright
  * there are corners that only these show. match/looks.c says what is believed. What the luma has is known from the look without
- * them.
+ * them. Images that have nothing in common (match/two_view.c) are not looked at again.
  *
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
  * often. So a stretched look needs ENOUGH matches, and as many more than there are.
@@ -44,6 +44,7 @@
 #include "geometry/geometry_options.h"
 #include "match/both_poses.h"
 #include "match/final_pose.h"
+#include "match/match_result.h"
 #include "match/upsampled.h"
 #include "match/upsampled_geometry.h"
 #include "match/match_options.h"
@@ -108,7 +109,7 @@ static int32_t asks_colours(const search *s)
 
 static int32_t may_look_at_colours(const search *s)
 {
-    return asks_colours(s) && (!s->best || asj_looks_want_other(s->best));
+    return asks_colours(s) && (!s->best || (asj_looks_want_other(s->best) && !asj_match_result_is_hopeless(s->best)));
 }
 
 /* Is what is not stretched looked at with colours, or may it be? */

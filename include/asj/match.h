@@ -43,8 +43,8 @@ typedef struct asj_match_options {
     double smoothing;            /* px: standard deviation of the blur before anything is sampled. 0 .. 2; 0.8; paper 0 */
     /* unrelated images */
     double related_support;      /* images whose likeliest candidates agree less than this have nothing in common and are answered
-                                  * at once, without matches; 0 = none are. With a geometry asked only where none is accepted.
-                                  * 0 .. 64; 0.14; paper 0 */
+                                  * at once, without matches; 0 = none are. With a geometry asked where a first look for one finds
+                                  * nothing either, and without matches where none is accepted. 0 .. 64; 0.14; paper 0 */
     /* short list, and alignment of its pairs */
     int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4; paper 16 */
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map, twice as many with junctions of octave -1, but for
@@ -85,7 +85,8 @@ typedef struct asj_match_options {
                                   * takes a minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
     int32_t look_at_colours;     /* 1 = automatically: where a geometry is asked and none is accepted, or none that is sure
                                   * (src/match/looks.c), or a motion without its pose, 8-bit colour images are looked at once more,
-                                  * with asj_detect_options.colours: unrelated ones in twice the time. 1; paper 0 */
+                                  * with asj_detect_options.colours, unless they have nothing in common (related_support). 1;
+                                  * paper 0 */
     int32_t reserved_switch;     /* zero */
     double reserved[16];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
@@ -254,7 +255,7 @@ typedef struct asj_stretch {
  *                    tells no pose, also stretched by 1, 3 and by 3, 1, those halved as above, unless rivals or a motion that stays
  *                    open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and
  *                    when it is twice as many; then it is looked at with octave -1, too, as above.
- *                  A pair that has nothing in common takes about twice as long as without all that (tests/accuracy/README.md).
+ *                  A pair that has nothing in common takes a quarter longer than without all that (tests/benchmark/README.md).
  *                  Where one of these looks shows more L-junctions than the matcher takes, the answer without it stays
  * detect_options   NULL = preset `match`
  * options          NULL = preset `default`; cameras are those of the images as they are

@@ -9,7 +9,7 @@
  *
  * Of the pair, the list below:
  *   expected.c       of upsampled images: where their own matches put the partners
- *   related.c        unless the images have nothing in common
+ *   related.c        unless the images have nothing in common; with a geometry where two_view.c, too, says so in a first look
  *   shortlist.c      best partners among all pairs               (rank.c; product_bound.c rules most pairs out)
  *   align.c          each candidate's map refined on the images  (disc.c; paper: not done)
  *   support.c        neighbouring candidates that agree          (agreement.c; support_gate.c; paper: not done)
@@ -153,17 +153,14 @@ static asj_status look_whether_related(const asj_match_run *run, stop_watch *wat
     return status;
 }
 
-/* The geometry; where none is accepted the matches stay those that there are without. */
-static asj_status match_by_geometry(asj_match_run *run, stop_watch *watch)
+/* The geometry; where none is accepted the matches stay those that there are without, of related images. */
+static asj_status match_by_geometry(asj_match_run *run, int32_t related, stop_watch *watch)
 {
     static const step geometry = {ASJ_STAGE_ASSIGN, 0.97, asj_apply_geometry};
     static const step guests = {ASJ_STAGE_ALIGN, 0.98, asj_match_guests};
     const size_t before = run->choices.count;
-    int32_t related = 1;
     asj_status status = run_step(run, &geometry, watch);
     if (status == ASJ_OK && run->geometry.status != ASJ_GEOMETRY_ACCEPTED) {
-        if (before > 0)
-            status = look_whether_related(run, watch, &related);
         run->choices.count = related ? before : 0;
         return status;
     }
@@ -178,16 +175,33 @@ static asj_status match_by_geometry(asj_match_run *run, stop_watch *watch)
     return status;
 }
 
+/* Upsampled images are looked at where the images have matches or leave a motion open: all is asked of them. */
+static asj_status look_whether_hopeless(asj_match_run *run, stop_watch *watch)
+{
+    int32_t may_be = 0;
+    asj_status status = ASJ_OK;
+    if (run->options->geometry.model != ASJ_GEOMETRY_NONE) {
+        may_be = run->image[0]->l_junctions.upsampled || run->image[1]->l_junctions.upsampled;
+        if (!may_be)
+            status = asj_geometry_may_be(run, &may_be);
+        stop(watch, ASJ_STAGE_ASSIGN);
+    }
+    run->hopeless = !may_be;
+    return status;
+}
+
 static asj_status run_steps(asj_match_run *run, stop_watch *watch)
 {
     const int32_t with_geometry = run->options->geometry.model != ASJ_GEOMETRY_NONE;
     int32_t related = 1;
     asj_status status = asj_progress(run->context, ASJ_STAGE_DISTANCES, 0.15);
-    if (status == ASJ_OK && !with_geometry)
+    if (status == ASJ_OK)
         status = look_whether_related(run, watch, &related);
-    if (status == ASJ_OK && related)
+    if (status == ASJ_OK && !related)
+        status = look_whether_hopeless(run, watch);
+    if (status == ASJ_OK && !run->hopeless)
         status = match_plainly(run, watch);
-    return status == ASJ_OK && with_geometry ? match_by_geometry(run, watch) : status;
+    return status == ASJ_OK && !run->hopeless && with_geometry ? match_by_geometry(run, related, watch) : status;
 }
 
 static asj_status finish(const asj_match_run *run, stop_watch *watch, asj_match_result **result)

@@ -40,7 +40,7 @@ static const asj_option_info rows[] = {
             "shortlist where upsampled_search_radius says where partners lie; 0 = as it is"),
     SWITCH(IMAGES, COMMON, look_at_colours, 1, 0, 1,
            "look at two whole 8-bit colour images once more, with the detector's colours, where a geometry is asked and none is "
-           "found that is sure; \"no\" halves the time of unrelated ones"),
+           "found that is sure, unless they have nothing in common"),
 
     NUMBER(FRAMES, ADVANCED, minimum_opening, "deg", 0, 80, 20, 20, 20, "branches that open by less give no frame"),
     INTEGER(FRAMES, ADVANCED, length_hypotheses, "", 1, 4, 3, 1, 3,

@@ -198,6 +198,7 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
     r->farthest = asj_farthest_from_line(run);
     r->has_epipolar = run->has_epipolar;
     memcpy(r->epipolar, run->epipolar, sizeof r->epipolar);
+    r->hopeless = run->hopeless;
     r->is_known = run->geometry.status == ASJ_GEOMETRY_ACCEPTED;
     if (r->is_known)
         r->known = (asj_known_geometry){run->judge, {{1, 1}, {1, 1}}, run->lines_hold};
@@ -254,6 +255,11 @@ double asj_match_result_end_tolerance(const asj_match_result *shown)
 double asj_match_result_farthest(const asj_match_result *shown)
 {
     return ((const asj_own_result *)shown)->farthest;
+}
+
+int32_t asj_match_result_is_hopeless(const asj_match_result *shown)
+{
+    return ((const asj_own_result *)shown)->hopeless;
 }
 
 void asj_match_result_free(asj_match_result **pointer)

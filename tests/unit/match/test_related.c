@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Images that have nothing in common are answered at once, and those that have something are matched as before. */
+/* Images that have nothing in common are answered at once, and those that have something are matched as before, with a geometry
+ * and without. */
 #include "match/match_options.h"
 #include "unit_test.h"
 
@@ -55,16 +56,22 @@ static int free_views(void **state)
     return unit_tear_down(state);
 }
 
-static asj_match_result *match(void **state, int32_t first, int32_t second, double least)
+static asj_match_result *match_by(void **state, int32_t first, int32_t second, double least, int32_t model)
 {
     asj_match_options options;
     asj_match_result *result = NULL;
     asj_match_options_init(&options);
+    options.geometry.model = model;
     if (least >= 0)
         options.related_support = least;
     assert_int_equal(asj_match_features(((unit_fixture *)*state)->context, views[first], views[second], &options, &result), ASJ_OK);
     assert_true(result->l_junction_count1 > 100 && result->l_junction_count2 > 100);
     return result;
+}
+
+static asj_match_result *match(void **state, int32_t first, int32_t second, double least)
+{
+    return match_by(state, first, second, least, ASJ_GEOMETRY_NONE);
 }
 
 static void the_same_room_is_matched_as_before(void **state)
@@ -91,6 +98,23 @@ static void a_room_and_noise_are_answered_at_once(void **state)
     asj_match_result *never = match(state, 0, 2, 0);
     assert_true(never->candidates > 100);
     assert_int_equal(never->match_count, 0);
+    asj_match_result_free(&never);
+}
+
+/* A geometry is looked for by few candidates, and by all of them where these find one. */
+static void a_geometry_is_looked_for_at_once(void **state)
+{
+    asj_match_result *noise = match_by(state, 0, 2, -1, ASJ_GEOMETRY_AUTO);
+    assert_int_equal(noise->geometry.status, ASJ_GEOMETRY_CHANCE);
+    assert_int_equal(noise->match_count, 0);
+    assert_int_equal(noise->candidates, 0);
+    asj_match_result_free(&noise);
+    asj_match_result *no = match_by(state, 0, 1, 64, ASJ_GEOMETRY_AUTO), *never = match_by(state, 0, 1, 0, ASJ_GEOMETRY_AUTO);
+    assert_int_equal(never->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    assert_int_equal(no->match_count, never->match_count);
+    assert_memory_equal(no->matches, never->matches, never->match_count * sizeof *never->matches);
+    assert_memory_equal(&no->geometry, &never->geometry, sizeof never->geometry);
+    asj_match_result_free(&no);
     asj_match_result_free(&never);
 }
 
@@ -128,6 +152,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_same_room_is_matched_as_before),
         cmocka_unit_test(a_room_and_noise_are_answered_at_once),
+        cmocka_unit_test(a_geometry_is_looked_for_at_once),
         cmocka_unit_test(the_option_decides),
         cmocka_unit_test(out_of_memory),
     };
