@@ -31,7 +31,7 @@
  * Colours. Where a geometry is asked, and neither look has one that is sure, agrees with the pictures and tells a motion, the
  * detector looks at colours, too (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright
  * there are corners that only these show. match/looks.c says what is believed. What the luma has is known from the look without
- * them. Images that have nothing in common (match/two_view.c) are not looked at again.
+ * them. Where the first look for a geometry shows that there is none (match/two_view.c) they are not looked at again.
  *
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
  * often. So a stretched look needs ENOUGH matches, and as many more than there are.

@@ -43,8 +43,9 @@ typedef struct asj_match_options {
     double smoothing;            /* px: standard deviation of the blur before anything is sampled. 0 .. 2; 0.8; paper 0 */
     /* unrelated images */
     double related_support;      /* images whose likeliest candidates agree less than this have nothing in common and are answered
-                                  * at once, without matches; 0 = none are. With a geometry asked where a first look for one finds
-                                  * nothing either, and without matches where none is accepted. 0 .. 64; 0.14; paper 0 */
+                                  * at once, without matches; 0 = none are. With a geometry asked these, and those that agree less
+                                  * than 3.5 times as much, have a first look for one, by which most are answered, and these have
+                                  * no matches where none is accepted. 0 .. 64; 0.14; paper 0 */
     /* short list, and alignment of its pairs */
     int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4; paper 16 */
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map, twice as many with junctions of octave -1, but for
@@ -85,8 +86,7 @@ typedef struct asj_match_options {
                                   * takes a minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
     int32_t look_at_colours;     /* 1 = automatically: where a geometry is asked and none is accepted, or none that is sure
                                   * (src/match/looks.c), or a motion without its pose, 8-bit colour images are looked at once more,
-                                  * with asj_detect_options.colours, unless they have nothing in common (related_support). 1;
-                                  * paper 0 */
+                                  * with asj_detect_options.colours, unless these have hardly anything in common. 1; paper 0 */
     int32_t reserved_switch;     /* zero */
     double reserved[16];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes

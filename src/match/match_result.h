@@ -37,7 +37,7 @@ typedef struct asj_own_result {
     double farthest;          /* px of the images from an epipolar line that its matches may be: asj_farthest_from_line() */
     asj_known_geometry known; /* the one that is accepted, */
     int32_t is_known;         /* .. if there is one */
-    int32_t hopeless;         /* is it known that the images have nothing in common? */
+    int32_t hopeless;         /* was a geometry asked, and is it known that there is none? */
     int32_t has_epipolar;     /* is the fundamental matrix of the matches known (epipolar.c), */
     double epipolar[9];       /* .. of the images, by rows */
 } asj_own_result;
@@ -49,7 +49,7 @@ double asj_match_result_end_tolerance(const asj_match_result *shown);
 /* px from an epipolar line that its matches may be. */
 double asj_match_result_farthest(const asj_match_result *shown);
 
-/* Have the images, as this look saw them, nothing in common, so that none like it has to be taken? */
+/* Is it known that the images have no geometry, so that no look like this one has to be taken for it? */
 int32_t asj_match_result_is_hopeless(const asj_match_result *shown);
 
 /* Its matches are no longer what they were: smallest distance first again, and where they are. */

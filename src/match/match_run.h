@@ -22,7 +22,7 @@ typedef struct asj_match_run {
     asj_colour_patches colours[2]; /* wide_shortlist.c: what pairs are compared by, too; NULL: by grey levels alone */
     asj_geometry geometry;     /* two_view.c */
     asj_judge judge;           /* two_view.c: what was accepted, for matches that were no candidates of it */
-    int32_t hopeless;          /* match.c: is it known that the images have nothing in common? */
+    int32_t hopeless;          /* match.c: is it known that there is no geometry? */
     int32_t lines_hold;        /* verdict.c: is what lies off its epipolar lines wrong? */
     asj_choices rejected;      /* verdict.c: what were choices before */
     const uint8_t *taken[2];   /* guests.c: locations that are matched already; NULL: guests are not proposed */

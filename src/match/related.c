@@ -10,7 +10,7 @@
  * in 11 pairs of photographs; it is below 0.14 in 27 of 32 pairs of unrelated photographs, which take a twelfth of the time of
  * pairs that match. Upsampled images whose own matches say where partners lie (expected.c) are not asked. A geometry finds matches
  * in pairs seen from so far apart that nothing agrees (frames of videos have .11 and .13, a magazine .05): with one two_view.c has
- * a first look for it at pairs of which this says no. */
+ * a first look for it where this is small. */
 #include "related.h"
 #include "align.h"
 #include "consensus.h"
@@ -19,6 +19,7 @@
 #include "support.h"
 #include "core/nth_smallest.h"
 
+#include <math.h>
 #include <string.h>
 
 #define SUREST 800 /* candidates of which support is asked; with 400 photographs of one place reach half of what they do so */
@@ -45,7 +46,7 @@ static asj_status keep_surest(asj_match_run *run)
     return ASJ_OK;
 }
 
-static asj_status look(asj_match_run *run, int32_t *related)
+static asj_status look(asj_match_run *run, double *support)
 {
     asj_status status = asj_shortlist(run);
     if (status == ASJ_OK)
@@ -58,10 +59,13 @@ static asj_status look(asj_match_run *run, int32_t *related)
         status = asj_consensus(run);
     if (status != ASJ_OK)
         return status;
-    size_t supported = 0;
-    for (size_t k = 0; k < run->candidates.count; k++)
-        supported += (double)run->candidates.list[k].support >= run->options->related_support;
-    *related = supported >= 2;
+    double largest = 0;
+    *support = 0;
+    for (size_t k = 0; k < run->candidates.count; k++) {
+        const double one = (double)run->candidates.list[k].support;
+        *support = fmax(*support, fmin(largest, one));
+        largest = fmax(largest, one);
+    }
     return ASJ_OK;
 }
 
@@ -83,14 +87,14 @@ static int32_t asked(const asj_match_run *run)
            count_home(&run->image[0]->l_junctions) >= FEW && count_home(&run->image[1]->l_junctions) >= FEW;
 }
 
-asj_status asj_related(const asj_match_run *run, int32_t *related)
+asj_status asj_related(const asj_match_run *run, double *support)
 {
     asj_memory *memory = &run->context->memory;
     asj_subset parts[2];
     asj_match_options options = *run->options;
     asj_match_run some = {.context = run->context, .options = &options, .image = {&parts[0].features, &parts[1].features},
                           .alignments = run->alignments};
-    *related = 1;
+    *support = HUGE_VAL;
     if (!asked(run))
         return ASJ_OK;
     options.shortlist = 1;
@@ -99,7 +103,7 @@ asj_status asj_related(const asj_match_run *run, int32_t *related)
     if (status == ASJ_OK)
         status = asj_subset_create(run, 1, 1, 0, &parts[1]);
     if (status == ASJ_OK)
-        status = look(&some, related);
+        status = look(&some, support);
     asj_release_much(memory, some.candidates.list);
     asj_support_free(memory, &some.support);
     asj_subset_free(memory, &parts[0]);

@@ -5,8 +5,8 @@
 
 #include "match_run.h"
 
-/* Sets *related to 0 when nothing speaks for it; the images as the run has them, of which nothing else is read or set. 1 where
- * option related_support is 0, or nothing can be said. */
-asj_status asj_related(const asj_match_run *run, int32_t *related);
+/* Sets *support to the second largest support of their likeliest candidates: below option related_support nothing speaks for it.
+ * The images as the run has them, of which nothing else is read or set. HUGE_VAL where that option is 0, or nothing can be said. */
+asj_status asj_related(const asj_match_run *run, double *support);
 
 #endif

@@ -10,9 +10,9 @@
  * The matches that are there are among the candidates whatever their rank, but those of guests (guests.c), which are alike among
  * themselves. Where a geometry is accepted, and no other one contradicts it, verdict.c says what it makes of the matches.
  *
- * Most pairs of a collection have nothing in common, and all that takes long. So those of which related.c says so are asked first
- * for a geometry by lists of FIRST_SHORTLIST, without matches, in a third of the time: where even that is chance, by LEAST_HOPE,
- * nothing more is looked for. */
+ * Most pairs of a collection have nothing in common, and all that takes long. So those of which related.c says so, or nearly, are
+ * asked first for a geometry by lists of FIRST_SHORTLIST, in a third of the time: where that is chance, by LEAST_HOPE, nothing more
+ * is looked for. */
 #include "two_view.h"
 #include "align.h"
 #include "compare.h"
@@ -32,8 +32,9 @@
 
 #define WIDE_SHORTLIST 16
 #define FIRST_SHORTLIST 4
-#define LEAST_HOPE (-2)  /* log10 NFA by such lists. Of frames of videos of which related.c says no, where the longer lists have -10
-                          * and less, these have -5.8, -6.1, -10.2, and -23 three times; of ten unrelated pairs 0 and more */
+#define LEAST_HOPE 0.0   /* log10 NFA by such lists. Of frames of videos of which that is so, where the longer lists have -10 and
+                          * less, these have -5.8, -6.1, -6.4 and from -10 down to -25, of LePoint3 -.1; of 52 unrelated pairs one
+                          * has less (-3.9), and most have no start worth refining */
 #define MOST_LISTED 4000 /* L-junctions of an image, the most meaningful ones. Upsampled photographs have over 20000, and what all
                           * of them bring besides takes longer than all other steps: a corridor with cameras 246 matches in 12.0 s,
                           * so 235 in 6.1, a dense mosaic 6073 in 36.7 s and 6074 in 12.5; rooms of poor texture have fewer */

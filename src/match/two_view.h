@@ -5,8 +5,8 @@
 
 #include "match_run.h"
 
-/* Sets *may to 0 where so few candidates show that there is none, and run->geometry to what they show: for images of which
- * asj_related() says that they have nothing in common. */
+/* Sets *may to 0 where fewer candidates show that there is none, and run->geometry to what they show: for images of which
+ * asj_related() says that they have little in common. */
 asj_status asj_geometry_may_be(asj_match_run *run, int32_t *may);
 
 /* Estimates it; where one is accepted it decides (verdict.h). */
