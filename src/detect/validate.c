@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Validation. A branch is reported when it is long enough, its line passes the junction, the strip along it is meaningful
- * (strip.c), reaches the junction and follows an edge instead of crossing some (tilt.c), and no better branch points the same way;
- * a junction, when two of its branches open and say well enough where it is. In coarse octaves two branches may be meaningful
- * together. */
+ * (strip.c) and reaches the junction, and no better branch points the same way; a junction, when two of its branches open and it
+ * would be found again (steady.c), which edges that a branch crosses instead of following one (tilt.c) make less likely. In coarse
+ * octaves two branches may be meaningful together. */
 #include "validate.h"
 #include "blurred_corner.h"
 #include "core/angle.h"
 #include "curvature.h"
 #include "locate.h"
+#include "steady.h"
 #include "strip.h"
 #include "tilt.h"
 
@@ -49,19 +50,6 @@
  * from the junction lends it 0.2 to 0.35. So a branch with less than this share is none of two that make a junction; of one that
  * others make it is a branch. */
 #define LEAST_IMAGE_SHARE 0.38
-
-/* px of the octave: a standard deviation of the location beyond which nothing is a junction. Lines that follow an arc, a texture
- * or what compression leaves do not meet anywhere in particular: of the junctions that twenty-three photographs have in the
- * image itself 33 % of those beyond .42 were found again at zoom .9, of the others 71 %. Noise on weak corners does less, and
- * where it does more the next octave sees them better. In coarse octaves a corner of 5 grey levels in noise of 2 has up to .6,
- * and no branch that is SURE. Where one is, it is the corner that is uncertain: a long edge that other things come near. (Of the
- * junctions of 32 photographs found in octave 1 29 % of those beyond .45 were found again at zoom .9, of the others 66 %; in the
- * coarser ones 14 % of those beyond .22. A limit between, for all of them: with .3 fewer of 26 photographs repeat, with .42
- * fewer of six others.) MOST_SD is that of octave 0 and of a finer one. */
-#define MOST_SD 0.42
-#define MOST_COARSE_SD 0.35
-#define MOST_SD_OF_WEAK 0.6
-#define SURE (-10 * ASJ_LN_10)
 
 /* Two branches together. Where both are short and weak neither strip may be meaningful by itself, though a junction of both is one
  * place with two ends: of two strips with tails F_i, F_j there are NM (sqrt(NM))^2 octaves tests, so
@@ -225,7 +213,7 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
         const asj_strip shorter = asj_strip_test(context, frame, options, &line);
         branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width, explained));
     }
-    if (!reaches(frame, options, branch, &strip) || asj_is_tilted(options, &strip.sums))
+    if (!reaches(frame, options, branch, &strip) || (!options->strip_test && asj_is_tilted(options, &strip.sums)))
         return NOT_AT_ALL;
     if (!options->strip_test || branch->log_nfa <= log_epsilon)
         return options->strip_test && frame->octave <= 0 && strip.near_share < LEAST_IMAGE_SHARE ? IF_OTHERS_OPEN : ALONE;
@@ -255,20 +243,6 @@ static void judge_pairs(const asj_frame *frame, const asj_detect_options *option
             keep[i] = j != i && verdict[i] == WITH_OTHERS && verdict[j] != NOT_AT_ALL && turn >= least && turn <= ASJ_PI - least &&
                       a->log_nfa + b->log_nfa <= limit;
         }
-}
-
-static double most_sd(const asj_frame *frame, const asj_hypothesis *hypothesis)
-{
-    double best = 0;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        best = fmin(best, hypothesis->branches[i].log_nfa);
-    return frame->octave <= 0 ? MOST_SD : best <= SURE ? MOST_COARSE_SD : MOST_SD_OF_WEAK;
-}
-
-static int is_unsure(const asj_frame *frame, const asj_detect_options *options, const asj_hypothesis *hypothesis)
-{
-    const double most = most_sd(frame, hypothesis);
-    return options->strip_test && hypothesis->location_variance > most * most;
 }
 
 /* Where the branches that are left meet: one that was none should not say where the junction is. Of soft ones the lines do not say
@@ -314,8 +288,9 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
     }
     if (hypothesis->branch_count < count)
         meet_again(context, frame, options, hypothesis);
-    if (is_unsure(frame, options, hypothesis) ||
-        (options->strip_test && asj_is_arc(frame, hypothesis, options->minimum_opening * ASJ_DEGREE)))
+    if (options->strip_test)
+        asj_keep_steady(context, frame, options, hypothesis);
+    if (options->strip_test && asj_is_arc(frame, hypothesis, options->minimum_opening * ASJ_DEGREE))
         hypothesis->branch_count = 0;
     const asj_hypothesis unsorted = *hypothesis;
     hypothesis->branch_count = 0;
@@ -323,12 +298,21 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         asj_hypothesis_insert(hypothesis, &unsorted.branches[i]);
 }
 
+static int is_tilted(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                     const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
+    const asj_strip strip = asj_strip_test(context, frame, options, &line);
+    return asj_is_tilted(options, &strip.sums);
+}
+
 int asj_validate_another(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
     return judge(context, frame, options, hypothesis, branch) != NOT_AT_ALL &&
            branch->log_nfa <= log(options->epsilon) - ANOTHER_LOG && fabs(branch->offset) <= LARGEST_OFFSET_OF_ANOTHER &&
-           asj_hypothesis_is_free(hypothesis, branch->angle, asj_joined_apart(options));
+           asj_hypothesis_is_free(hypothesis, branch->angle, asj_joined_apart(options)) &&
+           !is_tilted(context, frame, options, hypothesis, branch);
 }
 
 void asj_validate_lengths(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)

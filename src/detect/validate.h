@@ -20,7 +20,7 @@ void asj_reject_oriented(const asj_context *context, const asj_frame *frame, con
                          asj_hypothesis *hypothesis);
 
 /* Drops branches that are too short, off the junction, not meaningful, or twins of a better one; branch_count becomes 0 when no two
- * branches open enough. Sorts the branches by angle. */
+ * branches open enough, when it would hardly be found again (steady.h), or on an arc. Sorts the branches by angle. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                   asj_hypothesis *hypothesis);
 
