@@ -116,7 +116,7 @@ typedef struct asj_detect_options {
     double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0;
                                    * paper -10; match -10 */
     double max_tilt;              /* deg: a branch that crosses the edges in its strip at a larger angle is turned to them,
-                                   * or is none; one that slips from each to the next at a smaller one ends where it leaves the
+                                   * or counts less; one that slips from each to the next at a smaller one ends where it leaves the
                                    * first. 0 = neither is asked. 0 .. 45; 6; paper 0; match 0 */
     double snap_distance;         /* px of its octave: a branch that ends this close to a junction on its line ends there; if not 0,
                                    * from 4 px in coarse octaves and 8 at corners beyond doubt. 0 .. 30; 2; paper 0; match 8 */

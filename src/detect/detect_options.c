@@ -96,8 +96,8 @@ static const asj_option_info rows[] = {
     NUMBER(REFINE, ADVANCED, near_strength, "sd", -10, 10, 0, -10, -10,
            "strength that a branch needs in its first 6 px: it must reach the junction"),
     NUMBER(REFINE, ADVANCED, max_tilt, "deg", 0, 45, 6, 0, 0,
-           "angle at which a branch may cross the edges in its strip; it is turned to them, or none; 0 = any, and it may slip "
-           "from one to the next"),
+           "angle at which a branch may cross the edges in its strip; it is turned to them, or counts less; 0 = any, and it may "
+           "slip from one to the next"),
     NUMBER(REFINE, ADVANCED, snap_distance, "px", 0, 30, 2, 0, 8,
            "a branch that ends so close (px of its octave) to a junction on its line ends at it"),
     NUMBER(REFINE, ADVANCED, end_contrast, "", 0, 0.9, 0.15, 0, 0,
