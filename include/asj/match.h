@@ -177,10 +177,11 @@ typedef struct asj_match_result {
  * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few that
  * contradict these, together with those of the first ones whose places no other match has; else the first one does
  * (src/match/upsampled.c). One geometry judges both; src/match/looks.c has the rules, and the numbers in them. It is that of the
- * second one, or, where it has none or loses the pose, that of the first one; of two poses that agree it is the surer one. Of two
- * at odds the images decide by how well they agree with each (picture_agreement), then much more evidence does, then which of them
- * is upside down (rotation[4] < 0); otherwise they are ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of two
- * planes the pose is left out. Where the first one, of known cameras, has rivals or leaves its motion open, the second one holds,
+ * second one, or, where it has none or loses the pose, that of the first one; of two that agree the surer one, whose pose is told
+ * as the mean of both, each as well as it is known. Of two at odds the images decide by how well they agree with each
+ * (picture_agreement), then much more evidence does, then which of them is upside down (rotation[4] < 0); otherwise they are
+ * ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of two planes the pose is left out.
+ * Where the first one, of known cameras, has rivals or leaves its motion open, the second one holds,
  * whatever its matches, when it accepts the same pose or the rival's, or another one that is sure, with more evidence; only then
  * where the first one has no matches; and not when it accepts none, or one that is upside down, or less surely another one of a
  * motion that was open. Beside a rival that is sure by itself it needs much more evidence. Where the second one has rivals and much
@@ -239,8 +240,8 @@ typedef struct asj_stretch {
  *                  - where that gives options->upsample_from matches, also with junctions of octave -1, which hold as asj_match()
  *                    says (result->upsampled), and half octaves (options->upsampled_half_octaves), unless detect_options name
  *                    another first octave, or one octave alone, or an image has more than 2 megapixels. A pose of the images, with
- *                    known cameras also a geometry without one, is estimated again from these matches: of two that agree the surer
- *                    one is told where they hold, two at odds are decided or ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is
+ *                    known cameras also a geometry without one, is estimated again from these matches: of two that agree the mean
+ *                    is told where they hold, two at odds are decided or ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is
  *                    accepted that they accept, too, or that they have much more evidence for. Another geometry of the images
  *                    judges them. Where the images have rivals or leave the motion open, with known cameras no match is needed to
  *                    look, and without, where they have no geometry, one is enough;

@@ -46,13 +46,6 @@ static const number numbers[NUMBERS] = {
     [VERY_COARSE] = {0, 1, {0, -1.0}},       /* 1 from octave 2 on */
 };
 
-/* tan phi times rho of a strip, in tan max_tilt. */
-static double tilt(const asj_detect_options *options, const asj_strip_sums *sums)
-{
-    const double both = sums->un * sums->un / sqrt(sums->uu * sums->nn) / sums->nn;
-    return options->max_tilt > 0 && sums->uu > 0 && sums->nn > 0 ? both / tan(options->max_tilt * ASJ_DEGREE) : 0;
-}
-
 /* s of two branches, whose strips are p and q. */
 static double log_odds(const asj_frame *frame, const asj_detect_options *options, const asj_hypothesis *hypothesis,
                        const asj_hypothesis_branch *a, const asj_strip *p, const asj_hypothesis_branch *b, const asj_strip *q)
@@ -63,7 +56,7 @@ static double log_odds(const asj_frame *frame, const asj_detect_options *options
         [UNCERTAIN] = 0.5 * log(hypothesis->location_variance),
         [NEAR] = fmin(p->near_strength, q->near_strength),
         [SHARE] = fmin(p->near_share, q->near_share),
-        [TILT] = fmax(tilt(options, &p->sums), tilt(options, &q->sums)),
+        [TILT] = fmax(asj_tilt(options, &p->sums), asj_tilt(options, &q->sums)),
         [TURN] = sin(asj_angle_distance(a->angle, b->angle)),
         [MOVED] = hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0),
         [VERY_COARSE] = frame->octave >= 2,

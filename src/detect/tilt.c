@@ -45,6 +45,12 @@ int asj_is_tilted(const asj_detect_options *options, const asj_strip_sums *sums)
            fabs(sums->un) > STEADY * sqrt(sums->uu * sums->nn);
 }
 
+double asj_tilt(const asj_detect_options *options, const asj_strip_sums *sums)
+{
+    const double both = sums->un * sums->un / sqrt(sums->uu * sums->nn) / sums->nn;
+    return options->max_tilt > 0 && sums->uu > 0 && sums->nn > 0 ? both / tan(options->max_tilt * ASJ_DEGREE) : 0;
+}
+
 /* Along the branch's line, which may miss the junction. */
 static asj_strip_sums sums_along(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                                  const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)

@@ -220,9 +220,9 @@ static int32_t is_surer(const asj_geometry *a, const asj_geometry *b)
     return !are_at_odds(a, b) && uncertainty(a) < uncertainty(b) && a->log10_nfa < SURPASSES * b->log10_nfa;
 }
 
-/* Of two accepted poses, or turns of a camera: the surer one where they agree as far as they know. Where the images' pose is hardly
- * known beside another one from more evidence, that needs no matches that come again: those of the images tell little. (Room 7399:
- * known to 7 degrees, which it was out by, and to .4.) */
+/* Of two accepted poses, or turns of a camera: the surer one judges where they agree as far as they know. Where the images' pose
+ * is hardly known beside another one from more evidence, that needs no matches that come again: those of the images tell little.
+ * (Room 7399: known to 7 degrees, which it was out by, and to .4.) */
 static asj_looks compare(const asj_geometry *own, const asj_geometry *upsampled)
 {
     if (are_at_odds(own, upsampled))

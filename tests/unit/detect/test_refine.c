@@ -6,26 +6,15 @@
 #include "detect/strip.h"
 #include "detect/validate.h"
 #include "detect/search.h"
-#include "unit_test.h"
+#include "parallelogram.h"
 
 #include <asj/asj.h>
 
-enum { SIZE = 121 };
-
 typedef unit_fixture fixture;
-
-static const double corner_x = 60.3, corner_y = 59.6, sides[2] = {45, 38}, angles[2] = {0.3, 1.7};
 
 static int set_up(void **state)
 {
-    synth_scene scene;
-    synth_scene_init(&scene, SIZE, SIZE, 90);
-    const double ax = sides[0] * cos(angles[0]), ay = sides[0] * sin(angles[0]);
-    const double bx = sides[1] * cos(angles[1]), by = sides[1] * sin(angles[1]);
-    const synth_point corners[4] = {{corner_x, corner_y}, {corner_x + ax, corner_y + ay}, {corner_x + ax + bx, corner_y + ay + by},
-                                    {corner_x + bx, corner_y + by}};
-    synth_scene_add(&scene, corners, 4, synth_flat(160), 0);
-    return unit_set_up_scene(state, &scene, 1, 2);
+    return set_up_parallelogram(state, 160);
 }
 
 static int reset(void **state)

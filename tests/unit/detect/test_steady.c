@@ -4,24 +4,13 @@
 #include "core/context.h"
 #include "detect/strip.h"
 #include "detect/tilt.h"
-#include "unit_test.h"
-
-enum { SIZE = 121 };
+#include "parallelogram.h"
 
 typedef unit_fixture fixture;
 
-static const double corner_x = 60.3, corner_y = 59.6, sides[2] = {45, 38}, angles[2] = {0.3, 1.7};
-
 static int set_up(void **state)
 {
-    synth_scene scene;
-    synth_scene_init(&scene, SIZE, SIZE, 90);
-    const double ax = sides[0] * cos(angles[0]), ay = sides[0] * sin(angles[0]);
-    const double bx = sides[1] * cos(angles[1]), by = sides[1] * sin(angles[1]);
-    const synth_point corners[4] = {{corner_x, corner_y}, {corner_x + ax, corner_y + ay}, {corner_x + ax + bx, corner_y + ay + by},
-                                    {corner_x + bx, corner_y + by}};
-    synth_scene_add(&scene, corners, 4, synth_flat(100), 0);
-    return unit_set_up_scene(state, &scene, 1, 2);
+    return set_up_parallelogram(state, 100);
 }
 
 /* Slats, an edge every 6 px, that run along x and end at something upright: x = 29.5, where one of them begins at y = 59.8. */
