@@ -26,11 +26,12 @@ static void fill_reference(asj_tables *t)
     t->disc = asj_disc_reference;
     t->gate = asj_gate_reference;
     t->near = asj_near_reference;
+    t->ratio = asj_ratio_reference;
     t->ops = (asj_ops){
         .image = &t->image, .pyramid = &t->pyramid, .gradient = &t->gradient, .field = &t->field, .isotropic = &t->isotropic,
         .line = &t->line, .arc = &t->arc, .scan = &t->scan, .strip = &t->strip, .wedge = &t->wedge, .edge = &t->edge,
         .patch = &t->patch, .describe = &t->describe, .bound = &t->bound, .rank = &t->rank, .disc = &t->disc, .gate = &t->gate,
-        .near = &t->near};
+        .near = &t->near, .ratio = &t->ratio};
 }
 
 int asj_tables_has(int32_t simd)

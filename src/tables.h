@@ -14,6 +14,7 @@
 #include "detect/edge_rows.h"
 #include "detect/strip.h"
 #include "geometry/near.h"
+#include "geometry/ratios.h"
 #include "match/disc.h"
 #include "match/describe.h"
 #include "match/product_bound.h"
@@ -40,6 +41,7 @@ typedef struct asj_tables {
     asj_disc_ops disc;
     asj_gate_ops gate;
     asj_near_ops near;
+    asj_ratio_ops ratio;
 } asj_tables;
 
 /* Whether this build has a form (ASJ_SIMD_..., not auto). */

@@ -26,6 +26,7 @@ typedef struct asj_ops {
     struct asj_disc_ops *disc;           /* match/disc.h */
     struct asj_gate_ops *gate;           /* match/support_gate.h */
     struct asj_near_ops *near;           /* geometry/near.h */
+    struct asj_ratio_ops *ratio;         /* geometry/ratios.h */
 } asj_ops;
 
 #endif

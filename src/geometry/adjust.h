@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "model.h"
+#include "score.h"
 
 /* What a place contributes to the evidence. */
 typedef struct asj_share {

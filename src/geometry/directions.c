@@ -28,6 +28,7 @@
 #include "core/angle.h"
 #include "core/context.h"
 #include "core/sort.h"
+#include "elementary.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -49,6 +50,7 @@
 #define ROUNDS 8
 #define FAR 16.0 /* squared residual beyond which an edge counts as none of an axis */
 #define SHARES 3
+#define LARGE 1e200 /* one more factor is no more than 1e5 */
 
 static const double shares[SHARES] = {0.1, 0.3, 0.6};
 static const double bends[BENDS] = {2 * ASJ_DEGREE, 1 * ASJ_DEGREE, 0.5 * ASJ_DEGREE, 0.25 * ASJ_DEGREE, 0.125 * ASJ_DEGREE};
@@ -72,7 +74,7 @@ static double ratio(const scene *s, int32_t k, const double d[3])
     const asj_vote_line *one = &s->lines[k];
     const double dx = d[0] - d[2] * one->mx, dy = d[1] - d[2] * one->my, at = asj_dot3(one->l, d);
     const double square = at * at * s->precision[k], size2 = dx * dx + dy * dy;
-    return square < FAR * size2 ? s->peak[k] * exp(-0.5 * square / size2) : 0;
+    return square < FAR * size2 ? s->peak[k] * asj_exp_falling(-0.5 * square / size2) : 0;
 }
 
 /* Log of the mean over the shares: `near`, of each, the sum of log(1 + w / (1 - w) mean ratio). */
@@ -88,17 +90,26 @@ static double over_shares(const double near[SHARES], int32_t count)
     return largest + log(sum / SHARES);
 }
 
-/* known: of each edge, what other axes say of it; NULL: there are no others. */
+/* known: of each edge, what other axes say of it; NULL: there are no others. One logarithm is taken of many factors together. */
 static double score_beside(const scene *s, const double *known, const double *axes, int32_t axis_count)
 {
-    double near[SHARES] = {0};
+    double near[SHARES] = {0}, product[SHARES];
+    for (int32_t i = 0; i < SHARES; i++)
+        product[i] = 1;
     for (int32_t k = 0; k < s->count; k++) {
         double sum = known ? known[k] : 0;
         for (int32_t a = 0; a < axis_count; a++)
             sum += ratio(s, k, axes + 3 * a);
-        for (int32_t i = 0; i < SHARES && sum > 0; i++)
-            near[i] += log(1 + shares[i] / (1 - shares[i]) * sum / 3);
+        for (int32_t i = 0; i < SHARES && sum > 0; i++) {
+            product[i] *= 1 + shares[i] / (1 - shares[i]) * sum / 3;
+            if (product[i] > LARGE) {
+                near[i] += log(product[i]);
+                product[i] = 1;
+            }
+        }
     }
+    for (int32_t i = 0; i < SHARES; i++)
+        near[i] += log(product[i]);
     return over_shares(near, s->count);
 }
 

@@ -2,7 +2,7 @@
 /* May this be chance? A number of false alarms without a count of tests.
  *
  * Background: the candidates are wrong, and those of different spots of the images independent of each other. For one geometry
- * fixed beforehand, L = exp(score) (likelihood.c) then has mean 1. So has its mean over any distribution of geometries q that is
+ * fixed beforehand, L = exp(score) (score.c) then has mean 1. So has its mean over any distribution of geometries q that is
  * fixed beforehand (Fubini), and Markov's inequality bounds the chance of a large one:
  *
  *     evidence = integral of exp(score(g)) q(g) dg,     P(evidence >= 1 / epsilon) <= epsilon,     NFA = 1 / evidence,
@@ -33,6 +33,7 @@
 #include "elementary.h"
 #include "manhattan.h"
 #include "near.h"
+#include "ratios.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -194,8 +195,7 @@ static int32_t find_ratios(const asj_pairs *set, const asj_two_view *view, asj_a
 {
     const asj_peaks peaks = asj_likelihood_peaks(set, view, 1);
     const int32_t near = asj_near(set, set->count, view, asj_far_limit(set, view, 1), scratch->score.near);
-    for (int32_t n = 0; n < near; n++)
-        scratch->probability[n] = asj_likelihood_ratio(view, set, &set->list[scratch->score.near[n]], &peaks, NULL);
+    asj_likelihood_ratios(view, set, scratch->score.near, near, &peaks, scratch->probability);
     return near;
 }
 

@@ -4,7 +4,7 @@
 
 #include "adjust.h"
 
-/* The score of likelihood.c with what candidates of near places share counted once: evidence.c. scratch->probability is lost. */
+/* The score of score.c with what candidates of near places share counted once: evidence.c. scratch->probability is lost. */
 double asj_score_apart(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch);
 
 /* The same with a weight for what each place says, in place of that: scratch->weights after asj_weigh_places() are those of a view.

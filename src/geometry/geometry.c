@@ -2,7 +2,7 @@
 /* asj_geometry_estimate(): two-view geometry from candidate matches with affine maps.
  *
  *   pairs.c       candidates -> places, priors
- *   search.c      samples (minimal.c, five_point.c), scores (likelihood.c), refinement (adjust.c)
+ *   search.c      samples (minimal.c, five_point.c), scores (score.c), refinement (adjust.c)
  *   motions.c     essential matrices with planes (planes.c), and what the candidates allow around them (posterior.c)
  *   pure_rotation.c  a camera that only turns
  *   focal_finalists.c  the same for a row of focal lengths (focal.c), where none is known and it is asked for

@@ -17,7 +17,7 @@
  * out. They multiply the likelihood ratio of candidates (likelihood.c), and their mean over wrong ones is about 1.
  *
  * All candidates together say which rotation it is, before any translation: the likelihood ratio of a rotation is that of
- * likelihood.c with the ratios of labels alone,
+ * score.c with the ratios of labels alone,
  *
  *     log_labels = sum over the places of log(1 + sum p_c (ratio_c - 1)),
  *

@@ -40,37 +40,24 @@
  *     likelihood ~ sum w_k 2^(kd) exp(-4^k q / 2),     -2 d log(likelihood) / dq = sum of 4^k, each weighed by its part of the sum,
  *
  * so that exact matches speak the louder where there are any, and none is believed to be exact. Where standard deviations are
- * loosened, geometries are still some way off, and the largest size stands for all.
- *
- * A place has rivals, at most one of which is right; p_c the priors, LR_c the ratios:
- *
- *     score = sum over the places of log(1 - sum p_c + sum p_c LR_c),
- *
- * over those of image 1 and over those of image 2, and the smaller counts (a match is one to one). When partners are wrong and
- * independent, each LR has mean 1, so exp(score) has mean 1 for every fixed geometry: that is what evidence.c rests on. */
+ * loosened, geometries are still some way off, and the largest size stands for all. */
 #include "likelihood.h"
 #include "core/angle.h"
 #include "elementary.h"
 #include "labels.h"
-#include "near.h"
 
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
 
 #define SCALE_WIDTH 2.5
 #define SHEAR_WIDTH 1.5
-#define FAR 20.0 /* squared residual beyond which the ratio is as good as 0: exp(-10) times the peak of about 1e4 */
-#define FAR_PLANAR 34.0
 #define WIDEST 3.0 /* largest `loose` */
 #define ON_PLANES 0.75
-#define BEHIND 0.1
-#define SIZES 3
 #define SHARE_1 0.2 /* of the largest errors, .. */
 #define SHARE_2 0.4
 #define SHARE_4 0.4 /* .. and of those a quarter as large */
 
-static const double size_peaks[2][SIZES] = {{SHARE_1, SHARE_2 * 8, SHARE_4 * 64}, {SHARE_1, SHARE_2 * 64, SHARE_4 * 4096}};
+const double asj_size_peaks[2][ASJ_SIZES] = {{SHARE_1, SHARE_2 * 8, SHARE_4 * 64}, {SHARE_1, SHARE_2 * 64, SHARE_4 * 4096}};
 
 /* The square is HUGE_VAL also where some of the residuals are too large for a ratio above 0 with standard deviations times `loose`:
  * those that cost least are looked at first. */
@@ -80,7 +67,7 @@ static void epipolar_residuals(const double f[9], const asj_pairs *set, const as
     const double n1x = f[0] * c->x2 + f[3] * c->y2 + f[6], n1y = f[1] * c->x2 + f[4] * c->y2 + f[7];
     const double e = c->x2 * n2x + c->y2 * n2y + f[6] * c->x1 + f[7] * c->y1 + f[8];
     const double s1 = n1x * n1x + n1y * n1y, s2 = n2x * n2x + n2y * n2y, least = s1 < s2 ? s1 : s2;
-    const double sd = set->location_sd, most = FAR * loose * loose;
+    const double sd = set->location_sd, most = ASJ_FAR * loose * loose;
     r->square = HUGE_VAL;
     if (!(e * e <= most * sd * sd * least) || !(least > 0))
         return;
@@ -101,7 +88,7 @@ static void planar_residuals(const double h[9], const asj_pairs *set, double sd,
     const double w = h[6] * c->x1 + h[7] * c->y1 + h[8], x = (h[0] * c->x1 + h[1] * c->y1 + h[2]) / w;
     const double y = (h[3] * c->x1 + h[4] * c->y1 + h[5]) / w, dx = c->x2 - x, dy = c->y2 - y;
     r->square = HUGE_VAL;
-    const double most = FAR_PLANAR * loose * loose;
+    const double most = ASJ_FAR_PLANAR * loose * loose;
     if (!(w > 0) || !(dx * dx + dy * dy <= most * sd * sd))
         return;
     /* J and B = J^-1 A */
@@ -173,10 +160,10 @@ asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, d
 }
 
 /* exp(-q / 2) of each size, times its peak. */
-static void sizes_of(double square, int32_t planar, double sizes[SIZES])
+static void sizes_of(double square, int32_t planar, double sizes[ASJ_SIZES])
 {
     const double e = asj_exp_falling(-0.5 * square), e2 = e * e, e4 = e2 * e2, e8 = e4 * e4, e16 = e8 * e8;
-    const double *peak = size_peaks[planar];
+    const double *peak = asj_size_peaks[planar];
     sizes[0] = peak[0] * e;
     sizes[1] = peak[1] * e4;
     sizes[2] = peak[2] * e16;
@@ -184,14 +171,14 @@ static void sizes_of(double square, int32_t planar, double sizes[SIZES])
 
 double asj_size_weight(double square, int32_t planar)
 {
-    double s[SIZES];
+    double s[ASJ_SIZES];
     sizes_of(square, planar, s);
     const double sum = s[0] + s[1] + s[2];
     return sum > 0 ? (s[0] + 4 * s[1] + 16 * s[2]) / sum : 1;
 }
 
 /* The factor that being in front of both cameras is worth: see above. d1 and d2, the depths, as in asj_in_front() of model.c. */
-static double side_factor(const asj_two_view *view, const asj_pair *c)
+double asj_side_factor(const asj_two_view *view, const asj_pair *c)
 {
     const double *m = view->turned, *t = view->translation;
     const double a0 = m[0] * c->x1 + m[1] * c->y1 + m[2], a1 = m[3] * c->x1 + m[4] * c->y1 + m[5];
@@ -203,16 +190,16 @@ static double side_factor(const asj_two_view *view, const asj_pair *c)
         return 1;
     const double first = (b1 * t[2] - t[1]) * n0 + (t[0] - b0 * t[2]) * n1 + (b0 * t[1] - b1 * t[0]) * n2;
     const double second = (a1 * t[2] - a2 * t[1]) * n0 + (a2 * t[0] - a0 * t[2]) * n1 + (a0 * t[1] - a1 * t[0]) * n2;
-    return first > 0 && second > 0 ? 2 - BEHIND : BEHIND;
+    return first > 0 && second > 0 ? 2 - ASJ_BEHIND : ASJ_BEHIND;
 }
 
-static double peak_of(const asj_two_view *view, int32_t part, const asj_peaks *peaks)
+double asj_part_peak(const asj_two_view *view, int32_t part, const asj_peaks *peaks)
 {
     const double thickness = asj_part_thickness(view, part);
     return (part > 0 ? peaks->plane : peaks->first) / (thickness * thickness);
 }
 
-double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks)
+double asj_part_sum(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks)
 {
     const int32_t planar = asj_part_is_planar(view, part);
     const double *front = part > 0 ? view->in_front[part - 1] : NULL;
@@ -221,16 +208,23 @@ double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *s
     if (!front || front[0] * c->x1 + front[1] * c->y1 + front[2] > 0)
         part_residuals(view, part, set, c, peaks->loose, &r);
     const double square = r.square * (1 / (peaks->loose * peaks->loose));
-    if (!(square < (planar ? FAR_PLANAR : FAR)))
+    if (!(square < (planar ? ASJ_FAR_PLANAR : ASJ_FAR)))
         return 0;
-    double s[SIZES] = {0, 0, 0};
-    if (peaks->fine)
-        sizes_of(square, planar, s);
-    else
-        s[0] = asj_exp_falling(-0.5 * square);
+    if (!peaks->fine)
+        return asj_exp_falling(-0.5 * square);
+    double s[ASJ_SIZES];
+    sizes_of(square, planar, s);
+    return s[0] + s[1] + s[2];
+}
+
+double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks)
+{
+    const double sum = asj_part_sum(view, part, set, c, peaks);
+    if (!(sum > 0))
+        return 0;
     const double labels = peaks->named ? asj_label_ratio(peaks->named, c) : 1;
-    const double ratio = labels * peak_of(view, part, peaks) * (s[0] + s[1] + s[2]);
-    return !planar && view->has_motion ? ratio * side_factor(view, c) : ratio;
+    const double ratio = labels * asj_part_peak(view, part, peaks) * sum;
+    return asj_part_has_sides(view, part) ? ratio * asj_side_factor(view, c) : ratio;
 }
 
 double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks,
@@ -248,72 +242,5 @@ double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, cons
 
 double asj_far_limit(const asj_pairs *set, const asj_two_view *view, double loose)
 {
-    return (view->planar ? FAR_PLANAR : FAR) * loose * loose * set->location_sd * set->location_sd;
-}
-
-double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, double loose, asj_score_scratch *scratch)
-{
-    const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
-    const double limit = asj_far_limit(set, view, loose);
-    int32_t touched[2] = {0, 0};
-    double score[2] = {0, 0};
-    const int32_t near = asj_near(set, count, view, limit, scratch->near);
-    for (int32_t k = 0; k < near; k++) {
-        const asj_pair *c = &set->list[scratch->near[k]];
-        const double ratio = asj_likelihood_ratio(view, set, c, &peaks, NULL);
-        if (!(ratio > 0))
-            continue;
-        for (int32_t v = 0; v < 2; v++) {
-            const uint32_t place = v == 0 ? c->place1 : c->place2;
-            if (scratch->sum[v][place] == 0)
-                scratch->touched[v][touched[v]++] = place;
-            scratch->sum[v][place] += c->prior * ratio;
-        }
-    }
-    for (int32_t v = 0; v < 2; v++)
-        for (int32_t k = 0; k < touched[v]; k++) {
-            const uint32_t place = scratch->touched[v][k];
-            score[v] += asj_log_normal(1 - set->prior[v][place] + scratch->sum[v][place]) - set->log_rest[v][place];
-            scratch->sum[v][place] = 0;
-        }
-    for (int32_t v = 0; v < 2; v++)
-        score[v] += set->empty[v];
-    return score[0] < score[1] ? score[0] : score[1];
-}
-
-void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double loose, asj_score_scratch *scratch,
-                       double *probability)
-{
-    const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
-    const double limit = asj_far_limit(set, view, loose);
-    const int32_t near = asj_near(set, set->count, view, limit, scratch->near);
-    memset(probability, 0, (size_t)set->count * sizeof *probability);
-    for (int32_t n = 0; n < near; n++) {
-        const uint32_t k = scratch->near[n];
-        const asj_pair *c = &set->list[k];
-        probability[k] = c->prior * asj_likelihood_ratio(view, set, c, &peaks, NULL);
-        scratch->sum[0][c->place1] += probability[k];
-        scratch->sum[1][c->place2] += probability[k];
-    }
-    for (int32_t n = 0; n < near; n++) {
-        const uint32_t k = scratch->near[n];
-        const asj_pair *c = &set->list[k];
-        if (probability[k] > 0) {
-            /* all that competes: the rivals at either place, and no match at all */
-            const double rest1 = 1 - set->prior[0][c->place1] + scratch->sum[0][c->place1] - probability[k];
-            const double rest2 = 1 - set->prior[1][c->place2] + scratch->sum[1][c->place2] - probability[k];
-            const double rest = rest1 > rest2 ? rest1 : rest2;
-            probability[k] = probability[k] / (probability[k] + rest);
-        }
-    }
-    for (int32_t v = 0; v < 2; v++)
-        memset(scratch->sum[v], 0, (size_t)set->place_count[v] * sizeof *scratch->sum[v]);
-}
-
-double asj_inliers(const asj_pairs *set, const double *probability)
-{
-    double sum = 0;
-    for (int32_t k = 0; k < set->count; k++)
-        sum += probability[k];
-    return sum;
+    return (view->planar ? ASJ_FAR_PLANAR : ASJ_FAR) * loose * loose * set->location_sd * set->location_sd;
 }

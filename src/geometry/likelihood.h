@@ -11,6 +11,8 @@ typedef struct asj_residuals {
     double square;
 } asj_residuals;
 
+#define ASJ_FAR 20.0 /* square beyond which the ratio is as good as 0: exp(-10) times the peak of about 1e4 */
+#define ASJ_FAR_PLANAR 34.0
 #define ASJ_SHEAR_SD 0.25
 void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
 void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
@@ -48,24 +50,20 @@ double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, cons
 /* .. of one of the parts. */
 double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *pair, const asj_peaks *peaks);
 
+/* What it consists of: the part's peak; what labels say (labels.c), where peaks->named; the densities of the sizes of errors over
+ * the peak, added up, 0 where a residual is too large; and, where a part has sides, the factor that being in front is worth. */
+#define ASJ_SIZES 3
+extern const double asj_size_peaks[2][ASJ_SIZES]; /* of an epipolar geometry, of a homography */
+double asj_part_peak(const asj_two_view *view, int32_t part, const asj_peaks *peaks);
+double asj_part_sum(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *pair, const asj_peaks *peaks);
+static inline int32_t asj_part_has_sides(const asj_two_view *view, int32_t part)
+{
+    return view->has_motion && !asj_part_is_planar(view, part);
+}
+#define ASJ_BEHIND 0.1
+double asj_side_factor(const asj_two_view *view, const asj_pair *pair);
+
 /* What a residual of this square weighs in a least-squares step, where it has several sizes (asj_peaks.fine). */
 double asj_size_weight(double square, int32_t planar);
-
-/* Scratch for a score: place by place, and a list of those touched. */
-typedef struct asj_score_scratch {
-    double *sum[2];
-    uint32_t *touched[2];
-    uint32_t *near; /* one number a candidate, and one more */
-} asj_score_scratch;
-
-/* Log of likelihood with the geometry over likelihood without: likelihood.c. Of the first `count` candidates. */
-double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, double loose, asj_score_scratch *scratch);
-
-/* Sum of the probabilities of all candidates. */
-double asj_inliers(const asj_pairs *set, const double *probability);
-
-/* For every candidate the probability that it is right, given the geometry and its rivals at both places. */
-void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double loose, asj_score_scratch *scratch,
-                       double *probability);
 
 #endif

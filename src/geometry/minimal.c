@@ -182,6 +182,14 @@ int32_t asj_fundamental_from_three(const asj_pair *const pairs[3], const asj_cam
     return asj_model_complete(model);
 }
 
+/* A row of which only the entries of h_i and of h3 are not 0; on and below the diagonal. */
+static void add_row_of_six(double normal[81], int32_t i, const double row[6])
+{
+    for (int32_t p = 0; p < 6; p++)
+        for (int32_t q = 0; q <= p; q++)
+            normal[9 * (p < 3 ? 3 * i + p : 3 + p) + (q < 3 ? 3 * i + q : 3 + q)] += row[p] * row[q];
+}
+
 int32_t asj_homography_from_two(const asj_pairs *set, const asj_pair *const pairs[2], const asj_camera cameras[2], asj_model *model)
 {
     double normal[81] = {0}, h[9];
@@ -189,21 +197,13 @@ int32_t asj_homography_from_two(const asj_pairs *set, const asj_pair *const pair
         const normal_pair n = normalise(pairs[k], cameras);
         for (int32_t i = 0; i < 2; i++) { /* the coordinate of image 2 */
             const double to = i == 0 ? n.x2 : n.y2, *a = n.a + 2 * (ptrdiff_t)i, w = n.weight;
-            double row[9] = {0}, along[2][9] = {{0}, {0}};
-            row[3 * i] = n.x1;
-            row[3 * i + 1] = n.y1;
-            row[3 * i + 2] = 1;
-            row[6] = -to * n.x1;
-            row[7] = -to * n.y1;
-            row[8] = -to;
-            add_row(normal, row);
+            const double row[6] = {n.x1, n.y1, 1, -to * n.x1, -to * n.y1, -to};
+            add_row_of_six(normal, i, row);
             for (int32_t j = 0; j < 2; j++) {
-                along[j][3 * i + j] = w;
-                along[j][6] = -w * a[j] * n.x1;
-                along[j][7] = -w * a[j] * n.y1;
-                along[j][8] = -w * a[j];
-                along[j][6 + j] -= w * to;
-                add_row(normal, along[j]);
+                double along[6] = {0, 0, 0, -w * a[j] * n.x1, -w * a[j] * n.y1, -w * a[j]};
+                along[j] = w;
+                along[3 + j] -= w * to;
+                add_row_of_six(normal, i, along);
             }
         }
     }

@@ -10,6 +10,7 @@
 #include "labels.h"
 #include "manhattan.h"
 #include "near.h"
+#include "ratios.h"
 
 #include <math.h>
 #include <string.h>
@@ -206,6 +207,7 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
         status = order_rotations(context, set);
     if (status != ASJ_OK)
         return status;
+    set->ratio = context->ops->ratio;
     return asj_near_prepare(&context->memory, context->ops->near, set)
                ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu candidates", (unsigned long)set->count);
 }

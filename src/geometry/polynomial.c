@@ -58,24 +58,34 @@ static double bracketed(const double *c, int32_t degree, double low, double high
     return x;
 }
 
-/* c_k x^k = c_k / binomial(n, k) times the sum over i of binomial(i, k) of the i-th Bernstein polynomial: Pascal's sums. */
-static void to_bernstein(const double *c, int32_t degree, double *b)
+/* p(x), p(-x), and both of the reversed polynomial: all roots are roots of one of them in [0, 1], or their reciprocals. */
+enum { AS_IT_IS, MIRRORED, REVERSED, REVERSED_MIRRORED, FORMS };
+
+/* c_k x^k = c_k / binomial(n, k) times the sum over i of binomial(i, k) of the i-th Bernstein polynomial: Pascal's sums, of all
+ * forms side by side, which compilers turn into vectors. binomial(n, n - k) is the same. */
+static void to_bernstein(const double *c, int32_t degree, double b[ASJ_POLYNOMIAL_DEGREE + 1][FORMS])
 {
     double binomial = 1;
     for (int32_t k = 0; k <= degree; k++) {
-        b[k] = c[k] / binomial;
+        const double one = c[k] / binomial;
+        b[k][AS_IT_IS] = b[degree - k][REVERSED] = one;
+        b[k][MIRRORED] = k % 2 ? -one : one;
+        b[degree - k][REVERSED_MIRRORED] = (degree - k) % 2 ? -one : one;
         binomial = binomial * (degree - k) / (k + 1);
     }
     for (int32_t round = 1; round <= degree; round++)
         for (int32_t k = degree; k >= round; k--)
-            b[k] += b[k - 1];
+            for (int32_t form = 0; form < FORMS; form++)
+                b[k][form] += b[k - 1][form];
 }
 
 /* The piece becomes its right half. */
 static void halve(piece *p, int32_t degree, piece *left)
 {
     const double middle = 0.5 * (p->low + p->high);
-    *left = (piece){.low = p->low, .high = middle, .depth = ++p->depth};
+    left->low = p->low;
+    left->high = middle;
+    left->depth = ++p->depth;
     left->b[0] = p->b[0];
     for (int32_t round = 1; round <= degree; round++) {
         for (int32_t k = 0; k <= degree - round; k++)
@@ -102,13 +112,16 @@ static double chord(double first, double last)
     return (first < 0) == (last < 0) || first == 0 ? 0.5 : first / (first - last);
 }
 
-/* Roots in (0, 1], rising, and 0 when the polynomial begins with it. */
-static int32_t roots_to_one(const double *c, int32_t degree, double *roots)
+/* Roots of a form in (0, 1], rising, and 0 when the polynomial begins with it. c: its coefficients. */
+static int32_t roots_to_one(const double *c, int32_t degree, double (*bernstein)[FORMS], int32_t form, double *roots)
 {
     piece stack[DEEPEST + 2];
     int32_t count = 0, depth = 1;
-    stack[0] = (piece){.low = 0, .high = 1, .depth = 0};
-    to_bernstein(c, degree, stack[0].b);
+    stack[0].low = 0;
+    stack[0].high = 1;
+    stack[0].depth = 0;
+    for (int32_t k = 0; k <= degree; k++)
+        stack[0].b[k] = bernstein[k][form];
     if (stack[0].b[0] == 0)
         roots[count++] = 0;
     if (fabs(stack[0].b[degree]) < NOTHING) /* a root at 1, rounded: else it would be taken for one of those before it */
@@ -131,18 +144,18 @@ static int32_t roots_to_one(const double *c, int32_t degree, double *roots)
     return count;
 }
 
-/* Roots in [-1, 1], rising. */
-static int32_t roots_inside(const double *c, int32_t degree, double *roots)
+/* Roots in [-1, 1], rising, of the polynomial c or of the reversed one; form: AS_IT_IS or REVERSED, before its mirrored one. */
+static int32_t roots_inside(const double *c, int32_t degree, double (*bernstein)[FORMS], int32_t form, double *roots)
 {
     double mirrored[ASJ_POLYNOMIAL_DEGREE + 1], found[ASJ_POLYNOMIAL_DEGREE + 1];
     for (int32_t k = 0; k <= degree; k++)
         mirrored[k] = k % 2 ? -c[k] : c[k];
-    const int32_t below = roots_to_one(mirrored, degree, found);
+    const int32_t below = roots_to_one(mirrored, degree, bernstein, form + 1, found);
     int32_t count = 0;
     for (int32_t k = below - 1; k >= 0; k--)
         if (found[k] > 0)
             roots[count++] = -found[k];
-    const int32_t above = roots_to_one(c, degree, found);
+    const int32_t above = roots_to_one(c, degree, bernstein, form, found);
     for (int32_t k = 0; k < above && count < degree; k++)
         roots[count++] = found[k];
     return count;
@@ -160,6 +173,7 @@ static int is_known(const double *roots, int32_t count, double root)
 int32_t asj_polynomial_roots(const double *c, int32_t degree, double *roots)
 {
     double scaled[ASJ_POLYNOMIAL_DEGREE + 1], reversed[ASJ_POLYNOMIAL_DEGREE + 1], found[ASJ_POLYNOMIAL_DEGREE], largest = 0;
+    double bernstein[ASJ_POLYNOMIAL_DEGREE + 1][FORMS];
     for (int32_t k = 0; k <= degree; k++)
         largest = fmax(largest, fabs(c[k]));
     if (!(largest > 0) || !isfinite(largest))
@@ -170,8 +184,9 @@ int32_t asj_polynomial_roots(const double *c, int32_t degree, double *roots)
         scaled[k] = c[k] / largest;
         reversed[degree - k] = scaled[k];
     }
-    int32_t count = roots_inside(scaled, degree, roots);
-    const int32_t inside = count, outside = roots_inside(reversed, degree, found);
+    to_bernstein(scaled, degree, bernstein);
+    int32_t count = roots_inside(scaled, degree, bernstein, AS_IT_IS, roots);
+    const int32_t inside = count, outside = roots_inside(reversed, degree, bernstein, REVERSED, found);
     for (int32_t k = 0; k < outside && count < degree; k++)
         if (fabs(found[k]) > 1e-9 && fabs(found[k]) < 1 && !is_known(roots, inside, 1 / found[k]))
             roots[count++] = 1 / found[k];

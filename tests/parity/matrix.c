@@ -39,6 +39,7 @@ static const struct {
     SLOT(disc, compare),
     SLOT(gate, pass),
     SLOT(near, lines), SLOT(near, places),
+    SLOT(ratio, lines), SLOT(ratio, places),
 };
 #define SLOTS (sizeof slots / sizeof slots[0])
 

@@ -41,4 +41,8 @@ asj_status run_gate(asj_context *context, const subject *s, uint16_t *scratch, v
 size_t near_size(const subject *s);
 asj_status run_near(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 
+/* How likely candidates are under a geometry (ratio_operation.c). */
+size_t ratio_size(const subject *s);
+asj_status run_ratio(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+
 #endif

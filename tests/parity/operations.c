@@ -396,6 +396,7 @@ const operation operations[] = {
     {"bounds", 0, bounds_size, one_run, NULL, run_bounds},
     {"gate", 0, gate_size, one_run, NULL, run_gate},
     {"near", 0, near_size, one_run, NULL, run_near},
+    {"ratio", 0, ratio_size, one_run, NULL, run_ratio},
     {"field tile", 0, tile_size, tile_pixels, NULL, run_tiles},
     {"field rows", 1, tile_size, tile_pixels, gradient_bytes, run_field_rows},
     {"branches", 1, branches_size, tile_pixels, NULL, run_branches},

@@ -12,6 +12,7 @@
 #include "lines.h"
 #include "nears.h"
 #include "patches.h"
+#include "ratios.h"
 #include "strips.h"
 #include "simd/variants.h"
 
@@ -35,4 +36,6 @@ void asj_fill_avx2(const asj_ops *ops)
     ops->gate->pass = support_gate_avx2;
     ops->near->lines = near_lines_avx2;
     ops->near->places = near_places_avx2;
+    ops->ratio->lines = ratio_lines_avx2;
+    ops->ratio->places = ratio_places_avx2;
 }
