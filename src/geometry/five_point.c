@@ -6,7 +6,7 @@
  *     E = x X + y Y + z Z + W.
  *
  * A matrix is essential exactly when  det E = 0  and  2 E E' E - trace(E E') E = 0: ten equations of degree three in x, y, z
- * (Nister, equations 8 and 9). In the order of monomials
+ * (Nister, equations 8 and 9; the latter as (E E' - trace(E E') / 2) E = 0). In the order of monomials
  *
  *     x3 y3 x2y xy2 x2z x2 y2z y2 xyz xy | xz2 xz x yz2 yz y z3 z2 z 1
  *
@@ -23,6 +23,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#define WANTED 4 /* the row led by x2z */
+
 /* Polynomials in x, y, z: of degree one [x y z 1]; of degree two [xx xy xz x yy yz y zz z 1]; of degree three as above. */
 static const uint8_t square_of[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
 static const uint8_t cube_of[10][4] = {{0, 2, 4, 5},     {2, 3, 8, 9},     {4, 8, 10, 11},   {5, 9, 11, 12},   {3, 1, 6, 7},
@@ -36,11 +38,11 @@ static void add_product11(const double a[4], const double b[4], double factor, d
             out[square_of[i][k]] += factor * a[i] * b[k];
 }
 
-static void add_product21(const double a[10], const double b[4], double factor, double out[20])
+static void add_product21(const double a[10], const double b[4], double out[20])
 {
     for (int32_t i = 0; i < 10; i++)
         for (int32_t k = 0; k < 4; k++)
-            out[cube_of[i][k]] += factor * a[i] * b[k];
+            out[cube_of[i][k]] += a[i] * b[k];
 }
 
 /* The ten equations; entry[n] is the n-th entry of E as a polynomial. */
@@ -50,26 +52,31 @@ static void equations(double entry[9][4], double rows[10][20])
     memset(rows, 0, 10 * sizeof *rows);
     memset(square, 0, sizeof square);
     for (int32_t i = 0; i < 3; i++)
-        for (int32_t k = 0; k < 3; k++)
+        for (int32_t k = 0; k <= i; k++) {
             for (int32_t j = 0; j < 3; j++)
                 add_product11(entry[3 * i + j], entry[3 * k + j], 1, square[3 * i + k]);
-    for (int32_t n = 0; n < 10; n++)
-        trace[n] = square[0][n] + square[4][n] + square[8][n];
-    for (int32_t i = 0; i < 3; i++)
-        for (int32_t k = 0; k < 3; k++) {
-            for (int32_t j = 0; j < 3; j++)
-                add_product21(square[3 * i + j], entry[3 * j + k], 2, rows[3 * i + k]);
-            add_product21(trace, entry[3 * i + k], -1, rows[3 * i + k]);
+            if (k < i)
+                memcpy(square[3 * k + i], square[3 * i + k], sizeof *square);
         }
+    for (int32_t n = 0; n < 10; n++) {
+        trace[n] = square[0][n] + square[4][n] + square[8][n];
+        for (int32_t i = 0; i < 3; i++)
+            square[4 * i][n] -= 0.5 * trace[n];
+    }
+    for (int32_t i = 0; i < 3; i++)
+        for (int32_t k = 0; k < 3; k++)
+            for (int32_t j = 0; j < 3; j++)
+                add_product21(square[3 * i + j], entry[3 * j + k], rows[3 * i + k]);
     for (int32_t k = 0; k < 3; k++) { /* det E along the first row */
         const int32_t p = (k + 1) % 3, q = (k + 2) % 3;
         double minor[10] = {0};
         add_product11(entry[3 + p], entry[6 + q], 1, minor);
         add_product11(entry[3 + q], entry[6 + p], -1, minor);
-        add_product21(minor, entry[k], 1, rows[9]);
+        add_product21(minor, entry[k], rows[9]);
     }
 }
 
+/* Of the rows before the first one that is wanted it is enough that they have been subtracted from those behind them. */
 static int32_t eliminate(double rows[10][20])
 {
     for (int32_t at = 0; at < 10; at++) {
@@ -86,7 +93,7 @@ static int32_t eliminate(double rows[10][20])
             if (best != at)
                 rows[best][k] = keep;
         }
-        for (int32_t i = 0; i < 10; i++) {
+        for (int32_t i = at < WANTED ? at + 1 : WANTED; i < 10; i++) {
             const double factor = i == at ? 0 : rows[i][at];
             for (int32_t k = at; k < 20 && factor != 0; k++)
                 rows[i][k] -= factor * rows[at][k];

@@ -86,11 +86,16 @@ static int32_t set_plane(repeat *r, int32_t plane)
     return scale > 0;
 }
 
-/* How far a candidate is from where the plane takes it. */
-static double off_plane(const repeat *r, int32_t plane, const asj_pair *c)
+static int is_within(double px, double x, double y)
+{
+    return x * x + y * y < px * px;
+}
+
+/* Is a candidate where the plane takes it? */
+static int is_taken(const repeat *r, int32_t plane, const asj_pair *c)
 {
     const double *h = r->motion->view.planes[plane], w = h[6] * c->x1 + h[7] * c->y1 + h[8];
-    return hypot((h[0] * c->x1 + h[1] * c->y1 + h[2]) / w - c->x2, (h[3] * c->x1 + h[4] * c->y1 + h[5]) / w - c->y2);
+    return is_within(OFF_PLANE, (h[0] * c->x1 + h[1] * c->y1 + h[2]) / w - c->x2, (h[3] * c->x1 + h[4] * c->y1 + h[5]) / w - c->y2);
 }
 
 /* The matches on a plane; how many there are elsewhere. */
@@ -104,7 +109,7 @@ static double collect_matches(repeat *r, int32_t plane, const double *probabilit
         if (probability[k] < PROBABLE)
             continue;
         m->pair = c;
-        if (off_plane(r, plane, c) < OFF_PLANE && meet(r, 0, c->x1, c->y1, m->point[0]) && meet(r, 1, c->x2, c->y2, m->point[1]))
+        if (is_taken(r, plane, c) && meet(r, 0, c->x1, c->y1, m->point[0]) && meet(r, 1, c->x2, c->y2, m->point[1]))
             r->count++;
         else
             elsewhere += probability[k];
@@ -118,9 +123,9 @@ static void collect_others(repeat *r)
     for (int32_t n = 0; n < r->count; n++)
         for (int32_t k = 0; k < r->set->count && r->other_count < r->most_others; k++) {
             const asj_pair *c = &r->set->list[k], *m = r->matches[n].pair;
-            if (c->place1 == m->place1 && hypot(c->x2 - m->x2, c->y2 - m->y2) > SAME_THING)
+            if (c->place1 == m->place1 && !is_within(SAME_THING, c->x2 - m->x2, c->y2 - m->y2))
                 r->others[r->other_count++] = (other){n, c, 0};
-            else if (c->place2 == m->place2 && hypot(c->x1 - m->x1, c->y1 - m->y1) > SAME_THING)
+            else if (c->place2 == m->place2 && !is_within(SAME_THING, c->x1 - m->x1, c->y1 - m->y1))
                 r->others[r->other_count++] = (other){n, c, 1};
         }
 }
@@ -162,7 +167,7 @@ static int32_t held_by(repeat *r, const double w[3])
         const other *o = &r->others[k];
         on_plane *m = &r->matches[o->match];
         const double x = o->side == 0 ? o->pair->x2 : o->pair->x1, y = o->side == 0 ? o->pair->y2 : o->pair->y1;
-        if (m->is_held || !(hypot(x - m->taken[o->side][0], y - m->taken[o->side][1]) < SAME_PERIOD))
+        if (m->is_held || !is_within(SAME_PERIOD, x - m->taken[o->side][0], y - m->taken[o->side][1]))
             continue;
         m->is_held = 1;
         held++;
@@ -181,7 +186,7 @@ static int32_t is_filled(const repeat *r)
         if (!(x > BORDER && y > BORDER && x < right && y < bottom))
             continue;
         for (int32_t k = 0; k < r->set->count && !found; k++)
-            found = hypot(r->set->list[k].x2 - x, r->set->list[k].y2 - y) < FILLED;
+            found = is_within(FILLED, r->set->list[k].x2 - x, r->set->list[k].y2 - y);
         inside++;
         filled += found;
     }
