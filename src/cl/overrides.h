@@ -19,7 +19,8 @@ asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test
 /* scan_ops.c; struct asj_cl_scan in context->cl->scan */
 asj_status asj_cl_field_branches(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
                                  const asj_scratch *scratch, asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
-asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
+asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, const asj_scratch *scratch,
+                            asj_ray *rays, size_t count);
 void asj_cl_free_scan(asj_context *context);
 
 /* match_ops.c; struct asj_cl_match in context->cl->match */

@@ -389,7 +389,8 @@ static asj_status scan_bands(asj_context *context, struct asj_cl_scan *state, co
     return status;
 }
 
-asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
+asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, const asj_scratch *scratch,
+                            asj_ray *rays, size_t count)
 {
     const int32_t rows = branches_rows(context, frame);
     struct asj_cl_scan *state;
@@ -397,7 +398,7 @@ asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const as
     if (count == 0)
         return ASJ_OK;
     if (scan->longest > 0 || count > INT32_MAX / 2 || (rows < frame->height && rows <= OVERLAP))
-        return asj_scan_rays(context, scan, frame, rays, count);
+        return asj_scan_rays(context, scan, frame, scratch, rays, count);
     asj_status status = get(context, &state);
     if (status != ASJ_OK)
         return status;
@@ -407,6 +408,6 @@ asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const as
     if (status != ASJ_OK)
         state->generation = 0; /* whatever there is may be half done */
     else if (waiting > 0)
-        return asj_scan_rays(context, scan, frame, rays, count);
+        return asj_scan_rays(context, scan, frame, scratch, rays, count);
     return status == ASJ_OK ? fetch_rays(context, scan, state, rays, count) : status;
 }

@@ -166,7 +166,7 @@ static void follow_part(const follower *f, const asj_part *part, size_t *next, s
 
 /* Memory of all threads. */
 typedef struct workplaces {
-    uint16_t *scratch;
+    const asj_scratch *scratch;
     size_t *next; /* see take_ray() */
     group *groups;
 } workplaces;
@@ -189,7 +189,7 @@ static void follow_some(const void *data, const asj_part *part)
     for (int64_t i = part->first; i < part->end; i++) {
         const size_t own = (size_t)i;
         const follower f = {j->context->ops->field, j->context->ops->arc, j->scan, j->frame, own,
-                            j->w->scratch + own * asj_field_scratch(j->scan->field), &j->w->groups[own], j->watch};
+                            j->w->scratch->memory + own * j->w->scratch->size, &j->w->groups[own], j->watch};
         follow_part(&f, part, j->w->next, j->threads, j->rays, j->count);
     }
 }
@@ -206,21 +206,20 @@ static asj_status follow_rays(asj_context *context, const asj_scan *scan, const 
     return asj_watch_end(&watch);
 }
 
-asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
+asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, const asj_scratch *scratch,
+                         asj_ray *rays, size_t count)
 {
     const int32_t threads = asj_threads_for(context, (int64_t)count, LEAST_RAYS);
     asj_memory *memory = &context->memory;
     asj_status status = ASJ_OK;
-    const workplaces w = {asj_allocate(memory, (size_t)threads * asj_field_scratch(scan->field), sizeof *w.scratch),
-                          asj_allocate(memory, (size_t)threads, sizeof *w.next),
+    const workplaces w = {scratch, asj_allocate(memory, (size_t)threads, sizeof *w.next),
                           asj_allocate(memory, (size_t)threads, sizeof *w.groups)};
-    if (w.scratch && w.next && w.groups)
+    if (w.next && w.groups)
         status = follow_rays(context, scan, frame, &w, threads, rays, count);
     else
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for following rays");
     asj_release(memory, w.groups);
     asj_release(memory, w.next);
-    asj_release(memory, w.scratch);
     return status;
 }
 

@@ -100,7 +100,7 @@ static int ends_before(const asj_detection_run *run, const asj_ray *ray)
 
 static asj_status follow(const asj_detection_run *run, const asj_scan *scan, asj_ray *rays, size_t count)
 {
-    return run->context->ops->scan->rays(run->context, scan, run->frame, rays, count);
+    return run->context->ops->scan->rays(run->context, scan, run->frame, &run->scratch, rays, count);
 }
 
 static asj_status scan_branches(asj_detection_run *run, const asj_scan *scan, int32_t votes, asj_ray *rays,

@@ -90,7 +90,8 @@ static asj_status scan_pass(const asj_detection_run *run, const lists *l, size_t
             l->rays[b * (size_t)p->count + (size_t)i] =
                 (asj_ray){h->x, h->y, asj_angle_wrap(l->branches[b]->angle + p->angles[i]), start, 0, 0};
     }
-    const asj_status status = run->context->ops->scan->rays(run->context, run->scan, run->frame, l->rays, count * (size_t)p->count);
+    const asj_status status = run->context->ops->scan->rays(run->context, run->scan, run->frame, &run->scratch, l->rays,
+                                                            count * (size_t)p->count);
     if (status != ASJ_OK)
         return status;
     asj_watch watch;

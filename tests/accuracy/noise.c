@@ -54,6 +54,7 @@ typedef struct experiment {
     asj_field field;
     asj_scan scan;
     asj_scan_cache cache;
+    asj_scratch scratch;
     asj_ray *rays;
     double *log_nfa[STEPS]; /* one a ray */
     double count[WAYS][EPSILONS];
@@ -78,6 +79,10 @@ static int prepare(experiment *e)
     if (asj_frame_prepare(e->context, &e->frame, SIDE, SIDE) != ASJ_OK ||
         asj_field_create(e->context, &e->options, &e->field) != ASJ_OK)
         return fail(asj_context_message(e->context));
+    e->scratch.size = asj_field_scratch(&e->field);
+    e->scratch.memory = asj_allocate(&e->context->memory, e->scratch.size, sizeof *e->scratch.memory);
+    if (!e->scratch.memory)
+        return fail("out of memory");
     asj_scan_prepare(&e->options, &e->field, &e->cache, &e->scan);
     asj_scan_set_size(&e->options, SIDE, SIDE, &e->scan);
     return 0;
@@ -120,7 +125,7 @@ static void test_any_length(experiment *e)
 
 static int test_scanned_length(experiment *e)
 {
-    if (asj_scan_rays(e->context, &e->scan, &e->frame, e->rays, RAYS) != ASJ_OK)
+    if (asj_scan_rays(e->context, &e->scan, &e->frame, &e->scratch, e->rays, RAYS) != ASJ_OK)
         return fail(asj_context_message(e->context));
     for (int32_t i = 0; i < RAYS; i++) {
         const asj_ray *ray = &e->rays[i];
@@ -143,7 +148,7 @@ static int count_steps(experiment *e)
         asj_scan_set_size(&options, SIDE, SIDE, &scan);
         for (int32_t i = 0; i < RAYS; i++)
             e->rays[i].start = options.scan_start > 0 ? options.scan_start : 3;
-        if (asj_scan_rays(e->context, &scan, &e->frame, e->rays, RAYS) != ASJ_OK)
+        if (asj_scan_rays(e->context, &scan, &e->frame, &e->scratch, e->rays, RAYS) != ASJ_OK)
             return fail(asj_context_message(e->context));
         for (int32_t i = 0; i < RAYS; i++)
             e->count[STEPS][k] += e->rays[i].forward > 0 || e->rays[i].axial > 0;
@@ -330,6 +335,7 @@ int main(int argc, char **argv)
     asj_frame_free(&e.context->memory, &e.frame);
     asj_field_free(&e.context->memory, &e.field);
     asj_scan_cache_free(&e.context->memory, &e.cache);
+    asj_release(&e.context->memory, e.scratch.memory);
     asj_context_free(&e.context);
     free(e.rays);
     free(e.log_nfa[ANY]);

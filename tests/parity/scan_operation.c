@@ -37,7 +37,7 @@ asj_status run_rays(asj_context *context, const subject *s, uint16_t *scratch, v
     asj_scan scan;
     asj_ray *rays = output;
     const size_t count = ray_count(s), some = count / 3;
-    (void)scratch;
+    const asj_scratch whole = {scratch, s->scratch_size};
     options.arc_half_width = 1 + (int32_t)(s->seed % 3);
     options.scan_tolerance = (int32_t)(s->seed / 3 % 3);
     options.scan_axial = s->seed % 5 > 0;
@@ -49,9 +49,9 @@ asj_status run_rays(asj_context *context, const subject *s, uint16_t *scratch, v
     choose_rays(s, rays);
     asj_status status = asj_scan_cache_prepare(context, &s->frame, context->threads, &cache);
     if (status == ASJ_OK)
-        status = context->ops->scan->rays(context, &scan, &s->frame, rays, some);
+        status = context->ops->scan->rays(context, &scan, &s->frame, &whole, rays, some);
     if (status == ASJ_OK)
-        status = context->ops->scan->rays(context, &scan, &s->frame, rays + some, count - some);
+        status = context->ops->scan->rays(context, &scan, &s->frame, &whole, rays + some, count - some);
     asj_scan_cache_free(&context->memory, &cache);
     return status;
 }
