@@ -5,12 +5,11 @@
 
 #define ROWS (2 * ASJ_ROW_GROUP) /* in a group: more make threads wait less for each other, and take more memory */
 
-/* What is found while groups of rows are tested. */
-typedef struct lists {
-    void *records; /* asj_isotropic_junction: one for each candidate of a group */
-    void *found;   /* asj_isotropic_junction: those that passed, of all groups */
-    size_t record_capacity, found_capacity;
-} lists;
+/* asj_isotropic_junction: those that passed, of all groups, and behind them one for each candidate of the group that is tested. */
+typedef struct list {
+    void *junctions;
+    size_t capacity;
+} list;
 
 /* starts[y - top]: candidates of the group before row y. */
 static void count_candidates(const asj_detection_run *run, int32_t top, int32_t bottom, size_t *starts)
@@ -21,7 +20,7 @@ static void count_candidates(const asj_detection_run *run, int32_t top, int32_t 
         starts[y - top + 1] = starts[y - top] + asj_candidates_count(run->candidates + (ptrdiff_t)y * blocks, (size_t)blocks);
 }
 
-static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom, lists *l)
+static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom, list *l)
 {
     asj_context *context = run->context;
     size_t starts[ROWS + 1];
@@ -29,18 +28,15 @@ static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom
     run->candidate_count += starts[bottom - top];
     const asj_candidate_rows rows = {top, bottom, run->candidates, starts};
     const size_t total = starts[bottom - top], most = run->isotropic_count + total, size = sizeof(asj_isotropic_junction);
-    asj_status status = asj_grow(&context->memory, &l->records, &l->record_capacity, asj_detection_run_room(total), size, 0);
-    if (status == ASJ_OK)
-        status = asj_grow(&context->memory, &l->found, &l->found_capacity, asj_detection_run_room(most), size,
-                          run->isotropic_count);
+    asj_status status = asj_grow(&context->memory, &l->junctions, &l->capacity, asj_detection_run_room(most), size,
+                                 run->isotropic_count);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for %zu candidates", most);
+    asj_isotropic_junction *found = l->junctions, *tested = found + run->isotropic_count;
     if (total > 0)
-        status = context->ops->isotropic->rows(context, run->test, run->frame, &rows, &run->scratch, l->records);
+        status = context->ops->isotropic->rows(context, run->test, run->frame, &rows, &run->scratch, tested);
     if (status != ASJ_OK)
         return status;
-    const asj_isotropic_junction *tested = l->records;
-    asj_isotropic_junction *found = l->found;
     for (size_t i = 0; i < total; i++)
         if (asj_isotropic_persists(run->test, &tested[i]))
             found[run->isotropic_count++] = tested[i];
@@ -51,15 +47,14 @@ static asj_status test_candidates(asj_detection_run *run)
 {
     const int32_t height = run->frame->height;
     asj_status status = ASJ_OK;
-    lists l = {0};
+    list l = {0};
     for (int32_t top = 0; top < height && status == ASJ_OK; top += ROWS) {
         const int32_t bottom = height - top < ROWS ? height : top + ROWS;
         status = test_group(run, top, bottom, &l);
         if (status == ASJ_OK)
             status = asj_detection_run_progress(run, ASJ_STAGE_ISOTROPIC, 0.5 + 0.2 * bottom / height);
     }
-    asj_release(&run->context->memory, l.records);
-    run->isotropic = l.found;
+    run->isotropic = l.junctions;
     return status;
 }
 
