@@ -71,13 +71,11 @@ static asj_status prepare_memory(asj_context *context, asj_frame *frame, size_t 
 static void clear_margins(const asj_frame *frame, int16_t *rows)
 {
     const size_t stride = (size_t)frame->stride, width = (size_t)frame->width, height = (size_t)frame->height;
-    memset(rows, 0, ASJ_MARGIN * stride * sizeof *rows);
-    memset(rows + (height + ASJ_MARGIN) * stride, 0, ASJ_MARGIN * stride * sizeof *rows);
-    for (size_t y = 0; y < height; y++) {
-        int16_t *row = rows + (y + ASJ_MARGIN) * stride;
-        memset(row, 0, ASJ_MARGIN * sizeof *row);
-        memset(row + ASJ_MARGIN + width, 0, (stride - ASJ_MARGIN - width) * sizeof *row);
-    }
+    int16_t *row = rows + ASJ_MARGIN * stride + ASJ_MARGIN;
+    memset(rows, 0, (ASJ_MARGIN * stride + ASJ_MARGIN) * sizeof *rows);
+    for (size_t y = 0; y < height; y++, row += stride) /* what is right of a row, and left of the next one */
+        memset(row + width, 0, (stride - width) * sizeof *row);
+    memset(row, 0, (ASJ_MARGIN * stride - ASJ_MARGIN) * sizeof *row);
 }
 
 /* Everything but the memory. Returns how many elements of it that takes. */

@@ -30,14 +30,27 @@
  * branches. */
 #define APART 0.35
 
+/* The least sum with ln F <= log_p, in units of gamma; 65535 when that is none of a sector's. */
+static uint16_t least_sum(const asj_sectors *s, int32_t pixels, double log_p)
+{
+    int32_t low = 0, high = 65535;
+    while (low < high) {
+        const int32_t middle = (low + high) / 2;
+        if (asj_nfa_log_sector_tail(asj_nfa_tables(), (double)middle / (1 << s->gamma_bits), pixels) <= log_p)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return (uint16_t)low;
+}
+
 /* Sectors of as many pixels have the same one. */
 static uint16_t strength_of_tail(const asj_sectors *s, int32_t k, double log_p, const uint16_t *before)
 {
     for (int32_t i = 0; i < k; i++)
         if (s->size[i] == s->size[k])
             return before[i];
-    const double sum = ceil(asj_nfa_sector_threshold(asj_nfa_tables(), log_p, s->size[k]) * (1 << s->gamma_bits));
-    const uint16_t strength = asj_sector_strength(s, k, (uint16_t)(sum < 65535 ? sum : 65535));
+    const uint16_t strength = asj_sector_strength(s, k, least_sum(s, s->size[k], log_p));
     return strength > 0 ? strength : 1;
 }
 

@@ -24,15 +24,15 @@
 
 /* ---- thresholds, numbers of tests ---- */
 
-/* The least x > 0, to a relative 1e-14 and not below 1e-9, with tail(x) <= log_p: bisection, keeping tail(high) <= log_p.
- * HUGE_VAL when there is none: log_p below -DBL_MAX, or not a number. */
-static double invert(double (*tail)(const asj_nfa *, double, int32_t), const asj_nfa *nfa, double log_p, int32_t n)
+/* To a relative 1e-14 and not below 1e-9, where `high` always passes. HUGE_VAL when there is none: log_p below -DBL_MAX, or not a
+ * number. */
+double asj_nfa_arc_threshold(const asj_nfa *nfa, double log_p, int32_t n)
 {
     const double least = 1e-9;
     double low = 0, high = least;
     if (!(log_p >= -DBL_MAX))
         return HUGE_VAL;
-    while (!(tail(nfa, high, n) <= log_p)) {
+    while (!(asj_nfa_log_arc_tail(nfa, high, n) <= log_p)) {
         low = high;
         high *= 2;
         if (high > DBL_MAX / 4)
@@ -42,22 +42,12 @@ static double invert(double (*tail)(const asj_nfa *, double, int32_t), const asj
         return high;
     while (high - low > 1e-14 * high) {
         double middle = 0.5 * (low + high);
-        if (tail(nfa, middle, n) <= log_p)
+        if (asj_nfa_log_arc_tail(nfa, middle, n) <= log_p)
             high = middle;
         else
             low = middle;
     }
     return high;
-}
-
-double asj_nfa_sector_threshold(const asj_nfa *nfa, double log_p, int32_t n)
-{
-    return log_p >= 0 ? 0 : invert(asj_nfa_log_sector_tail, nfa, log_p, n);
-}
-
-double asj_nfa_arc_threshold(const asj_nfa *nfa, double log_p, int32_t n)
-{
-    return invert(asj_nfa_log_arc_tail, nfa, log_p, n);
 }
 
 /* #J(M) = pixels * sum over r of (1/M!) prod_{m=0}^{M-1} K max(0, 1 - 2 m Delta / pi), K = floor(2 pi r), Delta = tau / r:

@@ -9,10 +9,8 @@
 /* The tables; the same for all contexts. */
 const asj_nfa *asj_nfa_tables(void);
 
-/* Smallest t with ln F(t; n) <= log_p (bisection on asj_nfa_log_sector_tail(); log_p <= 0). */
-double asj_nfa_sector_threshold(const asj_nfa *nfa, double log_p, int32_t n);
-
-/* Smallest s > 0 with ln G(s; n) <= log_p. A result > 0 even when every s passes: an arc without any junction is no event. */
+/* Smallest s > 0 with ln G(s; n) <= log_p, by bisection. A result > 0 even when every s passes: an arc without any junction is no
+ * event. */
 double asj_nfa_arc_threshold(const asj_nfa *nfa, double log_p, int32_t n);
 
 /* ln #J(M): natural logarithm of the number of tests for isotropic junctions of `branches` branches: width x height pixels, the

@@ -34,10 +34,13 @@ void asj_scan_prepare(const asj_detect_options *options, const asj_field *field,
     scan->axial = options->scan_axial;
     scan->longest = 0;
     scan->rough = 0;
-    for (int i = 0; i < 1024; i++) {
-        scan->unit[i][0] = (int16_t)lrint(16384 * cos(ASJ_TWO_PI * i / 1024));
-        scan->unit[i][1] = (int16_t)lrint(16384 * sin(ASJ_TWO_PI * i / 1024));
+    for (int i = 0; i <= 256; i++) { /* from a quarter of a turn the others, and from cosines sines */
+        const int16_t cosine = (int16_t)lrint(16384 * cos(ASJ_TWO_PI * i / 1024)), opposite = (int16_t)-cosine;
+        scan->unit[i][0] = scan->unit[(1024 - i) % 1024][0] = cosine;
+        scan->unit[512 - i][0] = scan->unit[512 + i][0] = opposite;
     }
+    for (int i = 0; i < 1024; i++)
+        scan->unit[i][1] = scan->unit[(i + 768) % 1024][0];
     for (int32_t r = 0; r < ASJ_SCAN_TABLE_RADIUS; r++)
         for (int32_t d = 0; d < ASJ_SCAN_TABLE_WIDTH; d++) {
             scan->arc_cosine[r][d] = r ? (int32_t)lrint(one * cos((double)d / r)) : 0;

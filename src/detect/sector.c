@@ -44,23 +44,26 @@ static int by_angle(const void *a, const void *b)
     return p->squared - q->squared;
 }
 
-static int32_t list_offsets(int32_t radius, offset *list)
+/* Those of a quadrant, 0 <= angle < pi / 2, in any order. Returns how many there are; NULL counts. */
+static int32_t list_quadrant(int32_t radius, offset *list)
 {
     int32_t count = 0;
-    for (int32_t dy = -radius; dy <= radius; dy++)
-        for (int32_t dx = -radius; dx <= radius; dx++) {
-            int32_t squared = dx * dx + dy * dy;
-            if (squared == 0 || squared > radius * radius)
-                continue;
-            if (list) {
-                double angle = atan2(dy, dx);
-                list[count] = (offset){angle < 0 ? angle + ASJ_TWO_PI : angle, squared, dx, dy};
-            }
-            count++;
-        }
-    if (list)
-        asj_sort(list, (size_t)count, sizeof *list, by_angle);
+    for (int32_t dy = 0; dy <= radius; dy++)
+        for (int32_t dx = 1; dx * dx + dy * dy <= radius * radius; dx++, count++)
+            if (list)
+                list[count] = (offset){atan2(dy, dx), dx * dx + dy * dy, dx, dy};
     return count;
+}
+
+/* The other quadrants are the first one turned. */
+static void list_offsets(int32_t radius, offset *list)
+{
+    const int32_t count = list_quadrant(radius, list);
+    asj_sort(list, (size_t)count, sizeof *list, by_angle);
+    for (int32_t i = count; i < 4 * count; i++) {
+        const offset *before = &list[i - count];
+        list[i] = (offset){before->angle + 0.25 * ASJ_TWO_PI, before->squared, -before->dy, before->dx};
+    }
 }
 
 /* One block for all arrays. */
@@ -175,7 +178,7 @@ asj_status asj_sectors_create(asj_memory *memory, int32_t radius, double tau, as
     memset(s, 0, sizeof *s);
     s->radius = radius;
     s->count = (int32_t)(ASJ_TWO_PI * radius);
-    s->offset_count = list_offsets(radius, NULL);
+    s->offset_count = 4 * list_quadrant(radius, NULL);
     offset *list = asj_allocate(memory, (size_t)s->offset_count, sizeof *list);
     asj_status status = list ? make_room(memory, s) : ASJ_ERROR_MEMORY;
     if (status == ASJ_OK) {

@@ -13,11 +13,17 @@ static int32_t half_row(int32_t radius, int32_t dy)
     return dx;
 }
 
+/* By bisection: runs stand in the order of their rows, and of their columns in a row. */
 static int16_t find_place(const asj_sector_runs *runs, int32_t dx, int32_t dy)
 {
-    int32_t r = 0;
-    while (runs->dy[r] != dy || dx < runs->dx[r] || dx >= runs->dx[r] + ASJ_SECTOR_RUN)
-        r++;
+    int32_t r = 0, end = runs->count;
+    while (end - r > 1) {
+        const int32_t middle = (r + end) / 2;
+        if (runs->dy[middle] < dy || (runs->dy[middle] == dy && runs->dx[middle] <= dx))
+            r = middle;
+        else
+            end = middle;
+    }
     return (int16_t)(r * ASJ_SECTOR_RUN + dx - runs->dx[r]);
 }
 

@@ -367,26 +367,18 @@ static void test_stored_tails(void **state)
 
 static void test_thresholds_invert(void **state)
 {
-    static const int32_t terms[] = {1, 2, 3, 4, 5, 6, 7, 13, 28, 75, 360, 5000};
     static const double logs[] = {-1e-3, -0.1, -1, -7, -20, -100, -1000, -1e6};
     const asj_nfa *nfa = ((fixture *)*state)->nfa;
-    for (size_t k = 0; k < sizeof logs / sizeof *logs; k++) {
-        for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
-            double t = asj_nfa_sector_threshold(nfa, logs[k], terms[i]);
-            assert_true(asj_nfa_log_sector_tail(nfa, t, terms[i]) <= logs[k]);
-            assert_true(asj_nfa_log_sector_tail(nfa, t * (1 - 1e-9) - 1e-9, terms[i]) > logs[k]);
-        }
+    for (size_t k = 0; k < sizeof logs / sizeof *logs; k++)
         for (int32_t n = 1; n <= ASJ_MAX_ARC; n++) {
             double s = asj_nfa_arc_threshold(nfa, logs[k], n);
             assert_true(s > 0);
             assert_true(asj_nfa_log_arc_tail(nfa, s, n) <= logs[k]);
             assert_true(asj_nfa_log_arc_tail(nfa, s * (1 - 1e-9) - 1e-9, n) > logs[k]);
         }
-    }
-    assert_true(asj_nfa_sector_threshold(nfa, 0, 5) == 0);
     assert_true(asj_nfa_arc_threshold(nfa, 0, 5) > 0);
     assert_true(asj_nfa_arc_threshold(nfa, 0, 5) < 1e-6);
-    assert_true(asj_nfa_sector_threshold(nfa, -HUGE_VAL, 5) == HUGE_VAL);
+    assert_true(asj_nfa_arc_threshold(nfa, -HUGE_VAL, 5) == HUGE_VAL);
     assert_true(asj_nfa_arc_threshold(nfa, (double)NAN, 5) == HUGE_VAL);
 }
 
