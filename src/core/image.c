@@ -91,6 +91,12 @@ static size_t set_size(asj_frame *frame, int32_t width, int32_t height)
     return 2 * stride * ((size_t)height + 2 * ASJ_MARGIN) + stride * ((size_t)height + 2 * ASJ_GRAY_BORDER) + 2 * ASJ_GRAY_MARGIN;
 }
 
+size_t asj_frame_bytes(int32_t width, int32_t height)
+{
+    asj_frame frame;
+    return set_size(&frame, width, height) * sizeof *frame.memory;
+}
+
 /* Gray levels stand last: asj_frame_halve() reads those of the larger image when the planes of the smaller one have been set up. */
 static void set_planes(asj_frame *frame)
 {

@@ -41,6 +41,9 @@ asj_status asj_image_check(asj_context *context, const asj_image *image);
 
 /* Makes room for an image of this size; keeps the memory when it is large enough. */
 asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t width, int32_t height);
+
+/* Bytes that takes. */
+size_t asj_frame_bytes(int32_t width, int32_t height);
 /* The same for gray levels alone: the gradient must not be read. */
 asj_status asj_frame_prepare_gray(asj_context *context, asj_frame *frame, int32_t width, int32_t height);
 void asj_frame_free(asj_memory *memory, asj_frame *frame);

@@ -63,16 +63,18 @@ int asj_memory_allocator(const asj_context_options *options, asj_allocator *allo
 #define MUCH ((size_t)4 << 20) /* bytes: asj_release_much() */
 
 /* Of smaller blocks, two thirds of the pages that a first image touches, those that are kept share large pages: of 4096 bytes each
- * takes 1.2 us here, 2 MB of them 630 us, and as one page 30. What is given back of a shelf is not used again before all of it is,
- * so there are few, and for small images none (asj_memory_share()). Not with an allocator of the caller's, who knows better. */
+ * takes 1.2 us here, 2 MB of them 630 us, and as one page 30 to 240. What is given back of a shelf is not used again before all of
+ * it is, but for a large block at the end of the first one; so there are few, and for small images none (asj_memory_share()). Not
+ * with an allocator of the caller's, who knows better. */
 #define MOST_SHELVES 4
 #define LEAST_ON_SHELF 16384u           /* bytes */
-#define MOST_ON_SHELF (LARGE_PAGE / 2)
+#define MOST_ON_SHELF (LARGE_PAGE / 2)  /* of those that stand one behind the other */
 
 typedef struct asj_shelf {
     struct asj_shelf *next;
-    size_t used;   /* bytes from its beginning on */
-    size_t blocks; /* that have not been given back */
+    size_t size;
+    size_t used, end; /* bytes from its beginning on that are taken, and where what stands at its end begins */
+    size_t blocks;    /* that have not been given back */
 } shelf;
 
 /* Before each aligned block stands what is needed to release and to count it. */
@@ -103,55 +105,73 @@ static void count(asj_memory *memory, size_t bytes)
         memory->peak = memory->now;
 }
 
-/* A block of a shelf has been given back. */
-static void leave_shelf(asj_memory *memory, shelf *s)
+static size_t room_of(size_t bytes)
 {
-    shelf **link = &memory->shelves;
+    return (bytes + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT + GAP;
+}
+
+/* A block of a shelf has been given back. */
+static void leave_shelf(asj_memory *memory, const header *head)
+{
+    shelf **link = &memory->shelves, *s = head->on;
+    if ((char *)head->start == (char *)s + s->end)
+        s->end += room_of(head->bytes);
     if (--s->blocks > 0)
         return;
     while (*link != s)
         link = &(*link)->next;
     *link = s->next;
-    memory->now -= LARGE_PAGE;
+    memory->now -= s->size;
     memory->shelf_count--;
-    ALLOW(s, LARGE_PAGE);
+    ALLOW(s, s->size);
     memory->allocator.release(memory->allocator.user, s);
+}
+
+/* With room for a block, or NULL. */
+static shelf *make_shelf(asj_memory *memory, size_t room)
+{
+    const size_t pages = memory->shelves ? 1 : (memory->sharing + LARGE_PAGE - 1) / LARGE_PAGE, size = pages * LARGE_PAGE;
+    if (memory->shelf_count >= MOST_SHELVES || room > size - ASJ_ALIGNMENT)
+        return NULL;
+    shelf *s = memory->allocator.allocate(memory->allocator.user, size);
+    if (!s)
+        return NULL;
+    *s = (shelf){memory->shelves, size, ASJ_ALIGNMENT, size, 0};
+    memory->shelves = s;
+    memory->shelf_count++;
+    count(memory, size);
+    return s;
 }
 
 /* Room for a block, or NULL. */
 static char *take_from_shelf(asj_memory *memory, size_t bytes, shelf **on)
 {
-    const size_t room = (bytes + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT + GAP;
     *on = NULL;
-    if (!memory->open || !memory->sharing || memory->allocator.allocate != allocate_default || bytes < LEAST_ON_SHELF ||
-        bytes > MOST_ON_SHELF)
+    if (!memory->open || memory->sharing == 0 || memory->allocator.allocate != allocate_default || bytes < LEAST_ON_SHELF ||
+        bytes > SIZE_MAX / 2)
         return NULL;
-    for (shelf *s = memory->shelves; s && !*on; s = s->next)
-        *on = LARGE_PAGE - s->used >= room ? s : NULL;
-    if (!*on && memory->shelf_count < MOST_SHELVES) {
-        *on = memory->allocator.allocate(memory->allocator.user, LARGE_PAGE);
-        if (!*on)
-            return NULL;
-        **on = (shelf){memory->shelves, ASJ_ALIGNMENT, 0};
-        memory->shelves = *on;
-        memory->shelf_count++;
-        count(memory, LARGE_PAGE);
-    }
-    if (!*on)
+    const size_t room = room_of(bytes), from_end = bytes > MOST_ON_SHELF ? room : 0;
+    shelf *s = memory->shelves;
+    while (s && s->end - s->used < room)
+        s = s->next;
+    if (!s && (from_end == 0 || !memory->shelves))
+        s = make_shelf(memory, room);
+    if (!s)
         return NULL;
-    char *start = (char *)*on + (*on)->used;
-    (*on)->used += room;
-    (*on)->blocks++;
+    s->end -= from_end;
+    char *start = (char *)s + (from_end > 0 ? s->end : s->used);
+    s->used += room - from_end;
+    s->blocks++;
+    *on = s;
     FORBID(start + bytes, room - bytes);
     return start;
 }
 
 static void give_back(asj_memory *memory, header *head)
 {
-    shelf *on = head->on;
     ALLOW(block_of(head), size_of(head));
-    if (on) {
-        leave_shelf(memory, on);
+    if (head->on) {
+        leave_shelf(memory, head);
         return;
     }
     memory->now -= head->bytes;
@@ -287,9 +307,9 @@ void asj_memory_open(asj_memory *memory)
         memory->call++;
 }
 
-void asj_memory_share(asj_memory *memory, int32_t sharing)
+void asj_memory_share(asj_memory *memory, size_t first)
 {
-    memory->sharing = sharing;
+    memory->sharing = first;
 }
 
 void asj_memory_close(asj_memory *memory)

@@ -12,7 +12,7 @@ typedef struct asj_memory {
     int32_t open;            /* asj_memory_open() less asj_memory_close() */
     uint64_t call;           /* how often it was opened */
     struct asj_shelf *shelves; /* large pages that smaller blocks share */
-    int32_t sharing;           /* whether new ones do */
+    size_t sharing;            /* bytes of the first of them; 0 = new blocks do not */
     int32_t shelf_count;
 } asj_memory;
 
@@ -52,8 +52,9 @@ asj_status asj_grow_within(asj_memory *memory, void **block, size_t *capacity, s
 void asj_memory_open(asj_memory *memory);
 void asj_memory_close(asj_memory *memory);
 
-/* Whether new smaller blocks share large pages: a large image is ready sooner the first time, a small one takes more memory. */
-void asj_memory_share(asj_memory *memory, int32_t sharing);
+/* Whether new blocks of up to a megabyte share large pages: a large image is ready sooner the first time, a small one takes more
+ * memory. `first`: bytes of the first pages, where larger blocks have a place too while there is room; 0 = none are shared. */
+void asj_memory_share(asj_memory *memory, size_t first);
 
 /* Gives back all blocks that are kept. */
 void asj_memory_trim(asj_memory *memory);

@@ -7,7 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-#define SHARING_FROM 600000 /* pixels; their planes take most of the memory then */
+#define SHARING_FROM 600000     /* pixels; their planes take most of the memory then */
+#define MOST_SHARED (8 << 20)   /* bytes of planes that share large pages too: they stay as long as anything there does */
+#define SHARED_REST 1400000     /* bytes: tables and lists of photographs, .. */
+#define SHARED_BY_THREAD 600000 /* .. cache and scratch of a thread */
 
 #define LEAST_LIST 256 /* elements */
 
@@ -48,9 +51,14 @@ static asj_status make_tables(asj_context *context, const asj_detect_options *op
     return ASJ_OK;
 }
 
+static double first_octave(const asj_detection_run *run)
+{
+    return run->options->first_octave < 0 ? ASJ_FIRST_OCTAVE : 0;
+}
+
 asj_status asj_detection_run_start_plane(asj_detection_run *run)
 {
-    run->octave = run->options->first_octave < 0 ? ASJ_FIRST_OCTAVE : 0;
+    run->octave = first_octave(run);
     const asj_status status = asj_frame_prepare(run->context, run->frame, asj_octave_size(run->image->width, run->octave),
                                                 asj_octave_size(run->image->height, run->octave));
     run->frame->octaves = run->sharing;
@@ -105,6 +113,17 @@ static asj_status look_at_planes(asj_detection_run *run)
     return status;
 }
 
+/* What the first image of a context takes; 0 = too little to share large pages. */
+static size_t shared_bytes(const asj_detection_run *run)
+{
+    const int32_t width = run->image->width, height = run->image->height;
+    const double octave = first_octave(run);
+    const size_t planes = asj_frame_bytes(asj_octave_size(width, octave), asj_octave_size(height, octave));
+    if ((int64_t)width * height < SHARING_FROM)
+        return 0;
+    return planes <= MOST_SHARED ? planes + SHARED_REST + (size_t)run->context->threads * SHARED_BY_THREAD : 1;
+}
+
 asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
                                    const asj_detect_options *options, const void *output)
 {
@@ -128,7 +147,7 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
         status = look_at_planes(run);
     if (status != ASJ_OK)
         return status;
-    asj_memory_share(&context->memory, (int64_t)image->width * image->height >= SHARING_FROM);
+    asj_memory_share(&context->memory, shared_bytes(run));
     return prepare(run);
 }
 

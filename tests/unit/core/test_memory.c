@@ -237,7 +237,7 @@ static void test_shelves(void **state)
     (void)state;
     assert_int_equal(asj_memory_allocator(NULL, &memory.allocator), 1);
     for (int round = 0; round < 4; round++) {
-        asj_memory_share(&memory, round > 0);
+        asj_memory_share(&memory, round > 0 ? 1 : 0);
         asj_memory_open(&memory);
         for (size_t i = 0; i < MOST; i++) {
             const size_t size = 1000 + 1800 * i;
@@ -258,6 +258,36 @@ static void test_shelves(void **state)
             asj_memory_trim(&memory);
         assert_true(round == 1 || (memory.now == 0 && !memory.shelves));
     }
+    asj_memory_trim(&memory);
+    assert_true(memory.now == 0 && !memory.shelves);
+}
+
+/* The first large pages have room for a large block too, and again when that has been given back. */
+static void test_large_on_shelf(void **state)
+{
+    enum { SMALL = 100000, LARGE = 4 << 20, ALL = 6 << 20 };
+    asj_memory memory = {{NULL, NULL, NULL}, 0, 0, NULL, 0, 0, NULL, 0, 0};
+    (void)state;
+    assert_int_equal(asj_memory_allocator(NULL, &memory.allocator), 1);
+    asj_memory_share(&memory, ALL - 1000);
+    asj_memory_open(&memory);
+    unsigned char *small = asj_allocate(&memory, SMALL, 1);
+    for (int round = 0; round < 3; round++) {
+        unsigned char *large = asj_allocate(&memory, LARGE, 1), *other = asj_allocate(&memory, LARGE, 1);
+        assert_true(small && large && other);
+        memset(small, 1, SMALL);
+        memset(large, 2, LARGE);
+        memset(other, 3, LARGE);
+        assert_true(small[0] == 1 && small[SMALL - 1] == 1 && large[0] == 2 && large[LARGE - 1] == 2);
+        assert_int_equal(memory.shelf_count, 1);
+        assert_true(memory.now > ALL + LARGE && memory.now < ALL + LARGE + 1000);
+        asj_release(&memory, round == 1 ? other : large);
+        asj_release(&memory, round == 1 ? large : other);
+        asj_memory_trim(&memory);
+        assert_int_equal(memory.now, ALL);
+    }
+    asj_release(&memory, small);
+    asj_memory_close(&memory);
     asj_memory_trim(&memory);
     assert_true(memory.now == 0 && !memory.shelves);
 }
@@ -290,6 +320,7 @@ int main(void)
         cmocka_unit_test(test_grow_within),          cmocka_unit_test(test_much),
         cmocka_unit_test(test_kept),                 cmocka_unit_test(test_outgrown),
         cmocka_unit_test(test_list),                 cmocka_unit_test(test_shelves),
+        cmocka_unit_test(test_large_on_shelf),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
