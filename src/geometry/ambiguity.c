@@ -10,11 +10,15 @@
  * So is a motion that cannot be right beside the best one (contradiction.c), whatever they have matched, where pictures prefer it
  * by more than it lacks of evidence. (By less, a right best motion with 71 nats more had a rival that pictures prefer by 18.)
  *
+ * And so is a motion that excludes the best one and explains other matches nearly as well (is_other_witness()), or leaves the room
+ * upright where the best one does not (contradiction.c).
+ *
  * What is contradicted is no rival, nor is what pictures disagree with, unless it is ASJ_SURE_RIVAL. */
 #include "ambiguity.h"
 #include "contradiction.h"
 #include "core/angle.h"
 #include "geometry_options.h"
+#include "manhattan.h"
 #include "motions.h"
 #include "small_matrix.h"
 #include "stop.h"
@@ -28,6 +32,10 @@
 #define APART_OF_FEW 13.0
 #define CONTRARY 0.4
 #define SIMILAR_MOTION (6 * ASJ_DEGREE)
+#define WITNESS 0.65    /* of the log evidence, .. */
+#define MOST_SHARED 0.5 /* .. of its matches, .. */
+#define LIKELY 7.0      /* .. and nats that directions say for its rotation */
+#define SURE_DOUBT 0.8  /* against the best one, votes and agreement together: of 720 right ones one has .6 against it, none .8 */
 #define DOUBT 0.6 /* 229 pairs of rooms, two seeds: with .8 one more is accepted of 309, and its pose is wrong */
 
 /* What a rival is compared with: of a motion that stands for a whole region (posterior.c) the best of it, as the rivals are. */
@@ -54,6 +62,17 @@ static double least_contradiction(const asj_model *best, const asj_model *rival,
     return CONTRARY + (ASJ_CONTRARY_ALIKE - CONTRARY) * nearness;
 }
 
+/* Does another motion, which cannot be right beside the best one, explain matches of its own nearly as well, with a rotation that
+ * the directions of the room make likely, and the room upright? Then one of the two is made of what looks alike. It is the other
+ * one if pictures agree better with the best one. */
+static int32_t is_other_witness(asj_estimation *e, int32_t best, int32_t rival, double share, const asj_comparison *c)
+{
+    const asj_model *r = &e->finalists[rival];
+    return share > WITNESS && c->shared < MOST_SHARED && asj_exclude_each_other(&e->finalists[best], r) &&
+           asj_rotation_prior(&e->set, r->rotation) > LIKELY && !asj_finalist_turns_over(e, rival) &&
+           e->first.agreement.share - asj_agreement_of_other(e)->share < ASJ_AS_GOOD;
+}
+
 int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
 {
     int32_t second = -1;
@@ -65,10 +84,11 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
             continue;
         const asj_comparison c = asj_compare_with(e, rival);
         const double nfa = asj_estimation_log10_nfa(e, rival), share = nfa / to_compare(e, m);
-        const int32_t doubtful = c.votes_against_first > DOUBT;
+        const int32_t doubtful = c.votes_against_first > DOUBT || c.against_first > SURE_DOUBT;
         const int32_t contrary = c.contrary > (doubtful ? ASJ_CONTRARY_ALIKE : least_contradiction(m, rival, share));
         const int32_t preferred = c.preference > fmax(0, m->evidence - rival->evidence); /* more than it lacks */
-        if ((contrary || preferred) &&
+        const int32_t other = is_other_witness(e, best, n, share, &c) || asj_is_upright_instead(e, best, n);
+        if ((contrary || preferred || other) &&
             !asj_is_contradicted(e, best, n, &c) &&
             !(nfa > ASJ_SURE_RIVAL && asj_pictures_disagree(e, *asj_agreement_of_other(e), nfa))) {
             second = n;

@@ -9,8 +9,11 @@
  *
  * A rival that turns the room over (upright.c) is contradicted where the best one leaves it upright and has UPRIGHT_AHEAD times its
  * log evidence. Frames and windows are matched with themselves upside down by two thirds of their corners; in pairs of unrelated
- * rooms, where neither is right, by nearly all of them. So the way that is up never overrules what has more evidence: some cameras
- * are turned. But what turns the room over is never preferred to what leaves it upright, whatever colours and pictures say.
+ * rooms, where neither is right, by nearly all of them. So the way that is up alone never overrules what has more evidence: some
+ * cameras are turned. But what turns the room over is never preferred to what leaves it upright, whatever colours and pictures say.
+ * Where it has most evidence a motion that excludes it, leaves the room upright and has 1 / UPRIGHT_AHEAD of that makes it doubtful
+ * (ambiguity.c), and takes its place where pictures prefer it at all (strike_out.c): beside the right motion of a camera that is
+ * turned there is no such one.
  *
  * Two motions that are OTHER_MOTION apart cannot both be right, even if their matches are of different places and contradict each
  * other in nothing. So of these pictures prefer one where they agree with it as usual, CLEARLY better than with the other one, and
@@ -40,8 +43,7 @@
 #define LEAST_HELD 1e-3
 #define OF_FEW 1.5 /* pictures count so much less beside few matches (131 rooms: without, 2 more accepted, one pose wrong) */
 #define UPRIGHT_AHEAD 1.4 /* beside a right geometry such rivals have up to .71 of its evidence, in unrelated rooms .74 and more */
-#define AS_GOOD 0.1  /* of shares of agreement: smaller differences say nothing, .. */
-#define BETTER 4.0   /* .. and what agrees better by another 1/BETTER contradicts the other one */
+#define BETTER 4.0   /* what agrees better by another 1/BETTER than ASJ_AS_GOOD contradicts the other one */
 #define OTHER_MOTION (15 * ASJ_DEGREE)
 #define COMPARABLE 0.5    /* of the other one's log evidence: what has less is not preferred, whatever pictures say */
 #define CLEARLY 0.2       /* of shares of agreement */
@@ -92,13 +94,25 @@ static double contradiction(const asj_estimation *e)
     return all > 0 ? against / all : 0;
 }
 
+/* How much of them both have. */
+static double share_of_both(const asj_estimation *e)
+{
+    const double *first = e->first.probability, *other = e->other.probability;
+    double both = 0, all = 0;
+    for (int32_t k = 0; k < e->set.count; k++) {
+        both += fmin(first[k], other[k]);
+        all += other[k];
+    }
+    return all > 0 ? both / all : 0;
+}
+
 /* How much better the pictures agree with `one` than with `two`, in colours. (Grey levels alone: of 24 grey facades of equal
  * windows with stains of 10 levels one was accepted shifted by a window.) */
 static double better(const asj_estimation *e, asj_agreement one, asj_agreement two)
 {
     if (e->pictures->of[0].channel_count < ASJ_MOST_CHANNELS)
         return 0;
-    return BETTER * fmax(0, one.share - two.share - AS_GOOD);
+    return BETTER * fmax(0, one.share - two.share - ASJ_AS_GOOD);
 }
 
 /* Looks at the pictures through a geometry that is compared; look: 0 of the first one, 1 of the other. */
@@ -131,7 +145,7 @@ static void add_pictures(asj_estimation *e, asj_comparison *c)
     c->votes_against_first += against_first / beside;
 }
 
-static int32_t exclude_each_other(const asj_model *a, const asj_model *b)
+int32_t asj_exclude_each_other(const asj_model *a, const asj_model *b)
 {
     return a->kind == ASJ_GEOMETRY_ESSENTIAL && b->kind == ASJ_GEOMETRY_ESSENTIAL && asj_motions_apart(a, b) > OTHER_MOTION;
 }
@@ -141,7 +155,7 @@ static int32_t may_prefer(const asj_estimation *e)
 {
     const double first = e->first.model->evidence, other = e->other.model->evidence;
     return e->pictures && e->pictures->of[0].channel_count == ASJ_MOST_CHANNELS &&
-           fmin(first, other) > COMPARABLE * fmax(first, other) && exclude_each_other(e->first.model, e->other.model);
+           fmin(first, other) > COMPARABLE * fmax(first, other) && asj_exclude_each_other(e->first.model, e->other.model);
 }
 
 /* How many nats more the pictures say for the other one, where they prefer that; negative where they prefer the first one. */
@@ -179,7 +193,7 @@ asj_comparison asj_compare_with(asj_estimation *e, const asj_model *other)
     take(e, other, &e->other);
     const double colours = e->set.has_colours
                                ? asj_colours_against(&e->set, e->first.probability, e->other.probability, e->vote) : 0;
-    asj_comparison c = {contradiction(e), colours, -colours, -colours, preference(e)};
+    asj_comparison c = {contradiction(e), share_of_both(e), colours, -colours, -colours, preference(e)};
     add_pictures(e, &c);
     return c;
 }
@@ -194,6 +208,13 @@ static int32_t is_overturned(const asj_estimation *e, int32_t best, int32_t riva
     const asj_model *m = &e->finalists[best], *r = &e->finalists[rival];
     return m->evidence > fmax(0, UPRIGHT_AHEAD * r->evidence) && asj_finalist_turns_over(e, rival) &&
            !asj_finalist_turns_over(e, best);
+}
+
+int32_t asj_is_upright_instead(const asj_estimation *e, int32_t best, int32_t rival)
+{
+    const asj_model *m = &e->finalists[best], *r = &e->finalists[rival];
+    return UPRIGHT_AHEAD * r->evidence > m->evidence && asj_exclude_each_other(m, r) && asj_finalist_turns_over(e, best) &&
+           !asj_finalist_turns_over(e, rival);
 }
 
 int32_t asj_is_contradicted(const asj_estimation *e, int32_t best, int32_t rival, const asj_comparison *comparison)

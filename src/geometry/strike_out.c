@@ -27,6 +27,13 @@ static int32_t outweighs(double preference, double evidence)
     return preference > fmax(0, WEIGHT * evidence);
 }
 
+/* .. finalist `other` to `best`? What is upright instead need not outweigh what turns the room over. */
+static int32_t is_preferred(const asj_estimation *e, int32_t best, int32_t other, double preference)
+{
+    return outweighs(preference, e->finalists[best].evidence - e->finalists[other].evidence) ||
+           (preference > 0 && asj_is_upright_instead(e, best, other));
+}
+
 /* How much colours and pictures speak for each finalist against number `best`; 0 where that is not enough, or is no matter. */
 static void weigh(asj_estimation *e, int32_t best, double for_it[ASJ_MOST_MODELS])
 {
@@ -39,7 +46,7 @@ static void weigh(asj_estimation *e, int32_t best, double for_it[ASJ_MOST_MODELS
             (asj_finalist_turns_over(e, n) && !asj_finalist_turns_over(e, best)))
             continue;
         const asj_comparison c = asj_compare_with(e, m);
-        const int32_t preferred = outweighs(c.preference, e->finalists[best].evidence - m->evidence);
+        const int32_t preferred = is_preferred(e, best, n, c.preference);
         if ((preferred || c.against_first > OVERRULED) && !asj_pictures_disagree(e, *asj_agreement_of_other(e), nfa))
             for_it[n] = fmax(OVERRULED, c.against_first);
     }
@@ -56,7 +63,7 @@ static void strike(asj_estimation *e, int32_t chosen)
         if (!asj_model_stands(m) || !(m->evidence > c->evidence))
             continue;
         const asj_comparison between = asj_compare_with(e, m);
-        if (between.against_other > 1 || outweighs(-between.preference, m->evidence - c->evidence))
+        if (between.against_other > 1 || is_preferred(e, n, chosen, -between.preference))
             m->struck = ASJ_STRUCK_FOR_ANOTHER;
     }
 }

@@ -103,13 +103,18 @@ static int32_t have_same_pose(const asj_geometry *a, const asj_geometry *b)
     return fmax(d.rotation, d.translation) <= SAME_POSE;
 }
 
+static int32_t has_rival_pose(const asj_geometry *g)
+{
+    return g->has_rival && asj_dot3(g->rival_translation, g->rival_translation) > 0;
+}
+
 /* Is the pose that of the rival? */
 static int32_t is_rival_of(const asj_geometry *g, const asj_geometry *pose)
 {
     asj_geometry rival = *g;
     memcpy(rival.rotation, g->rival_rotation, sizeof rival.rotation);
     memcpy(rival.translation, g->rival_translation, sizeof rival.translation);
-    return g->has_rival && asj_dot3(g->rival_translation, g->rival_translation) > 0 && have_same_pose(&rival, pose);
+    return has_rival_pose(g) && have_same_pose(&rival, pose);
 }
 
 static int32_t are_at_odds(const asj_geometry *a, const asj_geometry *b)
@@ -268,11 +273,13 @@ static asj_looks look_beyond(const asj_match_result *own, const asj_geometry *up
 
 /* Have upsampled images that repeat themselves so much more evidence for another motion that an accepted one is not sure, unless
  * pictures agree better with it? (Of 396 pairs six repeat themselves beside an accepted motion. Three have that in front; of the
- * others, which have 2.1 to 2.6 times its evidence, two are wrong, which pictures say, and one is right.) */
+ * others, which have 2.1 to 2.6 times its evidence, two are wrong, which pictures say, and one is right.) Where their
+ * rival is another motion, too, so much more as looks at one motion have is enough: the right one would be one of the two. */
 static int32_t is_outdone(const asj_geometry *own, const asj_geometry *upsampled)
 {
+    const double times = has_rival_pose(upsampled) && !is_rival_of(upsampled, own) ? SURPASSES : OUTNUMBERS;
     return upsampled->status == ASJ_GEOMETRY_AMBIGUOUS && own->has_pose && upsampled->has_pose && are_others(own, upsampled) &&
-           upsampled->log10_nfa < OUTNUMBERS * own->log10_nfa && !agrees_better(own, upsampled);
+           upsampled->log10_nfa < times * own->log10_nfa && !agrees_better(own, upsampled);
 }
 
 /* The images' accepted geometry stays beside upsampled images that have none, or rivals that do not outdo it, and beside a motion

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Two motions that cannot both be right and whose matches contradict each other in nothing: pictures say which one it is. */
+/* Two motions that cannot both be right and whose matches contradict each other in nothing: pictures say which one it is, or
+ * the way that is up, or it stays open. */
 #include "unit_test.h"
 #include "tiled_wall.h"
 
 #include "core/angle.h"
 #include "geometry/ambiguity.h"
 #include "geometry/contradiction.h"
+#include "geometry/manhattan.h"
 #include "geometry/strike_out.h"
 
 enum { RIGHT_ONE, WRONG_ONE, TWIN };
@@ -99,6 +101,78 @@ static void test_preferred_motion_is_the_answer(void **state)
     release_estimation(context, e);
 }
 
+/* The wrong one turns the wall by a quarter. */
+static asj_estimation *prepare_turned(asj_context *context, int32_t channels, double right, double wrong,
+                                      asj_geometry_options *options)
+{
+    asj_estimation *e = create_tiled(context, TILED_TURNED, channels, 10, options);
+    e->finalists[RIGHT_ONE] = right_motion(right);
+    e->finalists[WRONG_ONE] = wrong_motion(TILED_TURNED, wrong);
+    e->count = 2;
+    return e;
+}
+
+/* .. and both images stand upright. */
+static asj_estimation *prepare_upright(asj_context *context, int32_t channels, double wrong, asj_geometry_options *options)
+{
+    asj_estimation *e = prepare_turned(context, channels, 1000, wrong, options);
+    e->set.has_down = 1;
+    e->set.down[0][1] = e->set.down[1][1] = 1;
+    return e;
+}
+
+static void test_upright_motion_makes_doubtful(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_geometry_options options;
+    int32_t doubt = 0;
+    for (int32_t more = 0; more < 2; more++) {
+        asj_estimation *e = prepare_upright(context, 0, more ? 1410 : 1390, &options);
+        assert_int_equal(asj_is_upright_instead(e, WRONG_ONE, RIGHT_ONE), !more);
+        assert_int_equal(asj_is_upright_instead(e, RIGHT_ONE, WRONG_ONE), 0);
+        assert_int_equal(asj_strongest_rival(e, WRONG_ONE, &doubt), more ? -1 : RIGHT_ONE);
+        e->set.has_down = 0;
+        assert_int_equal(asj_is_upright_instead(e, WRONG_ONE, RIGHT_ONE), 0);
+        release_estimation(context, e);
+    }
+}
+
+/* Pictures prefer it by less than it lacks of evidence. */
+static void test_upright_motion_is_the_answer(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (int32_t upright = 0; upright < 2; upright++) {
+        asj_geometry_options options;
+        asj_estimation *e = prepare_upright(context, 3, 1390, &options);
+        e->set.has_down = upright;
+        assert_int_equal(asj_strike_out(e), ASJ_OK);
+        assert_int_equal(e->finalists[WRONG_ONE].struck != ASJ_NOT_STRUCK, upright);
+        release_estimation(context, e);
+    }
+}
+
+/* Two motions with matches of their own, and the rotation of both is likely. */
+static void test_other_witness_makes_doubtful(void **state)
+{
+    static const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (int32_t directions = 0; directions < 2; directions++) {
+        asj_geometry_options options;
+        asj_directions_list list[2];
+        int32_t doubt = 0;
+        asj_estimation *e = prepare_turned(context, 0, 120, 130, &options);
+        for (int32_t v = 0; v < 2; v++)
+            asj_directions_given(axes, &list[v]);
+        if (directions)
+            assert_true(asj_manhattan_rotations(&context->memory, list, &e->set));
+        e->set.has_down = 0;
+        assert_int_equal(asj_strongest_rival(e, WRONG_ONE, &doubt), directions ? RIGHT_ONE : -1);
+        e->finalists[RIGHT_ONE].evidence = 70;
+        assert_int_equal(asj_strongest_rival(e, WRONG_ONE, &doubt), -1);
+        release_estimation(context, e);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -106,6 +180,9 @@ int main(void)
         cmocka_unit_test(test_only_motions_far_apart_exclude_each_other),
         cmocka_unit_test(test_much_evidence_is_not_outweighed),
         cmocka_unit_test(test_preferred_motion_is_the_answer),
+        cmocka_unit_test(test_upright_motion_makes_doubtful),
+        cmocka_unit_test(test_upright_motion_is_the_answer),
+        cmocka_unit_test(test_other_witness_makes_doubtful),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

@@ -118,6 +118,26 @@ static void rivals_with_much_evidence_are_a_dispute(void **state)
     }
 }
 
+/* .. and 1.25 times where their rival, by so many degrees, is another motion than what the images accept, too. */
+static void rivals_of_which_none_is_accepted_are_a_dispute(void **state)
+{
+    static const struct {
+        double upsampled_nfa, degrees;
+        asj_looks looks;
+    } cases[] = {{-64, 45, ASJ_LOOKS_DISPUTED}, {-62, 45, ASJ_LOOKS_BY_IMAGES}, {-99, 91, ASJ_LOOKS_BY_IMAGES}};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result own, upsampled, rival;
+        make(&own, ASJ_GEOMETRY_ACCEPTED, -50, 90, .5);
+        make(&upsampled, ASJ_GEOMETRY_AMBIGUOUS, cases[k].upsampled_nfa, 0, .5);
+        make(&rival, ASJ_GEOMETRY_ACCEPTED, -20, cases[k].degrees, .5);
+        upsampled.geometry.has_rival = 1;
+        memcpy(upsampled.geometry.rival_rotation, rival.geometry.rotation, sizeof rival.geometry.rotation);
+        memcpy(upsampled.geometry.rival_translation, rival.geometry.translation, sizeof rival.geometry.translation);
+        assert_int_equal(asj_looks_of(&own, &upsampled), cases[k].looks);
+    }
+}
+
 /* What is surely accepted is looked at once more where the pictures hardly agree with it, and so much is not believed then. */
 static void little_agreement_is_looked_at_again(void **state)
 {
@@ -182,6 +202,7 @@ int main(void)
         cmocka_unit_test(what_is_surer_by_far_settles),
         cmocka_unit_test(pictures_settle_what_is_ambiguous),
         cmocka_unit_test(rivals_with_much_evidence_are_a_dispute),
+        cmocka_unit_test(rivals_of_which_none_is_accepted_are_a_dispute),
         cmocka_unit_test(little_agreement_is_looked_at_again),
         cmocka_unit_test(surer_poses_of_colours_are_taken),
         cmocka_unit_test(little_knowledge_decides_nothing),
