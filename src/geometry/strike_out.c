@@ -3,8 +3,8 @@
  *
  * What pictures disagree with by themselves is struck out as long as it is the best. What they contradict in favour of another
  * geometry that is not chance either is struck out as well, and so is a motion where they prefer another one that excludes it, by
- * WEIGHT times what that lacks of evidence; that one is followed as the best one would have been (motions.c). Rivals with less
- * evidence are struck out, too: they would make the pose uncertain (answer.c). */
+ * WEIGHT times what that lacks of evidence, or at all if it is upright instead (contradiction.c); that one is followed as the best
+ * one would have been (motions.c). Rivals with less evidence are struck out, too: they would make the pose uncertain (answer.c). */
 #include "strike_out.h"
 #include "contradiction.h"
 #include "core/angle.h"
