@@ -3,7 +3,6 @@
 #include "message.h"
 
 #include <errno.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,19 +20,45 @@ static int out_of_memory(void)
     return CLI_FAILED;
 }
 
+/* What never ends is no list: a name is shorter than PART bytes, and millions of names are shorter than LONGEST. */
+enum { PART = 65536, LONGEST = 1 << 30 };
+
+static int is_end(char c)
+{
+    return c == '\0' || c == '\n';
+}
+
+/* Does a name end here? */
+static int ends_name(const char *text, size_t size)
+{
+    for (size_t i = 1; i < size; i++)
+        if (is_end(text[i]) && !is_end(text[i - 1]))
+            return 1;
+    return 0;
+}
+
 /* The whole stream with a zero after it. */
 static int read_all(FILE *stream, const char *name, char **text, size_t *size)
 {
     size_t room = 0;
     *size = 0;
     do {
-        if (*size + 1 >= room) {
-            char *more = room <= SIZE_MAX / 4 ? realloc(*text, room = room ? 2 * room : 65536) : NULL;
+        if (room - *size <= PART) {
+            char *more = realloc(*text, room = room ? 2 * room : 2 * (size_t)PART);
             if (!more)
                 return out_of_memory();
             *text = more;
         }
-        *size += fread(*text + *size, 1, room - 1 - *size, stream);
+        const size_t count = fread(*text + *size, 1, PART, stream);
+        if (count == PART && !ends_name(*text + *size, count)) {
+            cli_error("%s: not a list of names: %d bytes without one", name, PART);
+            return CLI_FAILED;
+        }
+        *size += count;
+        if (*size > LONGEST) {
+            cli_error("%s: a list of more than %d MiB", name, LONGEST >> 20);
+            return CLI_FAILED;
+        }
     } while (!feof(stream) && !ferror(stream));
     (*text)[*size] = '\0';
     if (!ferror(stream))
@@ -56,20 +81,20 @@ static int read_file(const char *file, char **text, size_t *size)
     return result;
 }
 
-/* Ends each name with a zero, and returns how many ends there are. */
+/* Ends each name with a zero, and returns how many there are. */
 static size_t cut(char *text, size_t size)
 {
     const int zeros = memchr(text, '\0', size) != NULL;
-    size_t ends = 1;
-    for (size_t i = 0; i < size; i++) {
-        if (!zeros && text[i] == '\n') {
+    size_t names = 0;
+    for (size_t i = 0; i < size && !zeros; i++)
+        if (text[i] == '\n') {
             text[i] = '\0';
             if (i > 0 && text[i - 1] == '\r')
                 text[i - 1] = '\0';
         }
-        ends += text[i] == '\0';
-    }
-    return ends;
+    for (size_t i = 0; i < size; i++)
+        names += text[i] != '\0' && text[i + 1] == '\0';
+    return names;
 }
 
 /* Where the first name begins: behind the byte order mark that editors on Windows put before text. */

@@ -234,6 +234,31 @@ static void more_images_from_a_file(void **state)
     expect_code(result, 2);
     expect_in(result, result->err, "changes nothing without --out-dir");
     expect_code(run_cli("detect", "-d", "listed", "--files-from", ".", NULL), 1);
+    result = run_cli("detect", "-d", "listed", "--files-from", "/dev/zero", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "/dev/zero: not a list of names: 65536 bytes without one");
+}
+
+/* Names as long as may be, and a list longer than what is read at once. */
+static void long_lists_and_names(void **state)
+{
+    enum { SIZE = 200000, NAME = 65535 };
+    char *list = malloc(SIZE);
+    (void)state;
+    assert_non_null(list);
+    memset(list, '\n', SIZE);
+    for (int i = 0; i + 2 < SIZE; i += 100)
+        list[i] = 'x';
+    write_bytes("list.long", list, SIZE);
+    const outcome *result = run_cli("detect", "-d", "listed", "--files-from", "list.long", NULL);
+    expect_in(result, result->err, "x.asj"); /* two thousand times the same name */
+    memset(list, 'x', SIZE);
+    list[NAME] = '\n';
+    write_bytes("list.long", list, NAME + 1);
+    expect_in(result, run_cli("detect", "-d", "listed", "--files-from", "list.long", NULL)->err, "File name too long");
+    write_bytes("list.long", list + NAME + 1, NAME + 1);
+    expect_in(result, run_cli("detect", "-d", "listed", "--files-from", "list.long", NULL)->err, "not a list of names");
+    free(list);
 }
 
 /* Nothing takes the place of the list itself, in whatever spelling. */
@@ -258,6 +283,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_link_to_nothing_yet_is_followed), cmocka_unit_test(names_that_promise_another_format),
         cmocka_unit_test(other_formats_than_names_tell),
         cmocka_unit_test(endings_in_capitals), cmocka_unit_test(more_images_from_a_file),
+        cmocka_unit_test(long_lists_and_names),
         cmocka_unit_test(a_list_of_images_is_not_overwritten),
     };
     program_start(argc, argv);
