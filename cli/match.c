@@ -295,6 +295,8 @@ static void print_bare(const run *r, int v, unsigned long corners)
     const char *where = region->mask ? ", where its mask is not 0," : region->width > 0 ? ", in its region," : "";
     if (arguments->junctions[v])
         cli_note("hint: %s has %lu corner%s", arguments->junctions[v], corners, corners == 1 ? "" : "s");
+    else if (cli_is_uniform(&r->inputs[v].pixels))
+        cli_note("hint: %s has no contrast: all its pixels are alike", r->inputs[v].name);
     else if (corners == 0)
         cli_note("hint: %s%s has no corner that is surer than chance", r->inputs[v].name, where);
     else

@@ -52,6 +52,24 @@ static const char *find_result(const char *path)
     return strstr(head, "\"asj-matches-1\"") ? "matches, not an image" : NULL;
 }
 
+static size_t pixel_size(int32_t format)
+{
+    return format == ASJ_FORMAT_GRAY8 ? 1 : format == ASJ_FORMAT_GRAY16 ? 2 : format == ASJ_FORMAT_GRAY_FLOAT ? 4 : 3;
+}
+
+int cli_is_uniform(const asj_image *image)
+{
+    const unsigned char *first = image->data;
+    const size_t size = pixel_size(image->format), row = size * (size_t)image->width;
+    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)row;
+    if (!first || memcmp(first, first + size, row - size) != 0) /* each pixel with the next one */
+        return 0;
+    for (int32_t y = 1; y < image->height; y++)
+        if (memcmp(first, first + y * stride, row) != 0)
+            return 0;
+    return 1;
+}
+
 /* Of a 16-bit image; 0 of others. */
 static uint32_t brightest(const asj_image *image)
 {

@@ -17,6 +17,9 @@ void cli_warn_of_gray(cli_session *session, const char *command, const char *nam
 /* Does it have colours that --colours looks at, and do they change from one place to the next, as at edges? */
 int cli_has_colour_edges(const asj_image *image);
 
+/* Are all pixels alike? There is nothing to find then. */
+int cli_is_uniform(const asj_image *image);
+
 /* The brightest level of a 16-bit image far darker than the white that its format has; 0: there is none, or its white was given.
  * Samples of 10 or 12 bits are such images, in which corners are too weak to be found. */
 uint32_t cli_dark_level(const asj_image *image);

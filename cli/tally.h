@@ -9,7 +9,8 @@
 typedef struct cli_tally {
     size_t total;         /* images of the run; one alone has its hint at once */
     size_t done, failed;
-    size_t bare;          /* without a junction, and large enough for one */
+    size_t uniform;       /* of one level */
+    size_t bare;          /* others without a junction that are large enough for one */
     size_t dark;          /* far darker than white */
     uint32_t dark_level;  /* the brightest of these */
     size_t bright;        /* most of it brighter than white */

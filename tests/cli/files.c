@@ -196,13 +196,24 @@ void write_crossing(const char *path)
     write_light(path, crossing);
 }
 
-void write_constant(const char *path, int width, int height)
+static void write_plain(const char *path, int width, int height, int more)
 {
     unsigned char *pixels = malloc((size_t)width * (size_t)height);
     assert_non_null(pixels);
     memset(pixels, 128, (size_t)width * (size_t)height);
+    pixels[(size_t)width * (size_t)height - 1] = (unsigned char)(128 + more);
     write_gray(path, pixels, width, height);
     free(pixels);
+}
+
+void write_constant(const char *path, int width, int height)
+{
+    write_plain(path, width, height, 0);
+}
+
+void write_nearly_constant(const char *path, int width, int height)
+{
+    write_plain(path, width, height, 1);
 }
 
 void write_noise(const char *path, int width, int height)

@@ -34,6 +34,9 @@ void write_float_scene(const char *path, float white);
 /* A PNG of one grey level. */
 void write_constant(const char *path, int width, int height);
 
+/* .. with a pixel that is one brighter. */
+void write_nearly_constant(const char *path, int width, int height);
+
 /* A PNG of random grey levels, which takes long to look at. */
 void write_noise(const char *path, int width, int height);
 

@@ -635,8 +635,9 @@ static void pictures_behind_the_first_are_told_once(void **state)
 static void many_images_have_one_line_of_hints(void **state)
 {
     (void)state;
-    write_constant("flat.png", 60, 40);
-    write_constant("tiny.png", 15, 60);
+    write_nearly_constant("flat.png", 60, 40);
+    write_nearly_constant("tiny.png", 15, 60);
+    write_constant("black.png", 15, 60);
     write_deep_scene("dim.png", 1023);
     write_deep_scene("dimmer.png", 600);
     const outcome *result = run_cli("detect", "-d", "hinted", "flat.png", NULL);
@@ -644,10 +645,12 @@ static void many_images_have_one_line_of_hints(void **state)
     assert_null(strstr(result->err, "done"));
     result = run_cli("detect", "-d", "hinted", "tiny.png", NULL);
     assert_null(strstr(result->err, "weaker"));
-    result = run_cli("detect", "-d", "hinted", "flat.png", "tiny.png", "dim.png", "none.png", "dimmer.png", "scene.png", NULL);
+    expect_in(result, run_cli("detect", "-d", "hinted", "black.png", NULL)->err, "black.png: no contrast: all pixels are alike\n");
+    result = run_cli("detect", "-d", "hinted", "flat.png", "tiny.png", "dim.png", "none.png", "dimmer.png", "scene.png",
+                     "black.png", NULL);
     expect_code(result, 1);
-    expect_in(result, result->err, "\n5 images done, 1 failed, 1 without a junction (weaker corners are found with --epsilon 100 "
-                                   "--candidate-strength 2), 2 far darker than white (--white 1023?)\n");
+    expect_in(result, result->err, "\n6 images done, 1 failed, 1 without contrast, 1 without a junction (weaker corners are "
+                                   "found with --epsilon 100 --candidate-strength 2), 2 far darker than white (--white 1023?)\n");
     assert_null(strstr(result->err, "flat.png: weaker"));
     assert_null(strstr(result->err, "dim.png: brightest"));
     result = run_cli("detect", "-d", "hinted", "--epsilon", "100", "--candidate-strength", "2", "flat.png", "scene.png", NULL);
