@@ -98,7 +98,7 @@ typedef struct asj_output asj_output;
 
 /* The absolute path of the file that an output of this path creates or replaces: folders resolved, symbolic links followed. So two
  * paths are one file when their targets are the same text. For what is no regular file the text means nothing.
- * ASJ_ERROR_ARGUMENT, ASJ_ERROR_MEMORY; ASJ_ERROR_FILE: the folder is missing, or target_size bytes are too few */
+ * ASJ_ERROR_ARGUMENT: a NULL pointer; ASJ_ERROR_FILE: the folder is missing, or target_size bytes are too few; ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_output_target(const char *path, char *target, size_t target_size);
 
 /* On success the caller owns *output until commit or abort.

@@ -28,7 +28,7 @@ static void output_free(asj_output *output)
 
 asj_status asj_output_target(const char *path, char *target, size_t target_size)
 {
-    if (!path || !target || !target_size)
+    if (!path || !target)
         return ASJ_ERROR_ARGUMENT;
     return asj_system_resolve(path, target, target_size);
 }

@@ -155,7 +155,6 @@ asj_status asj_system_resolve(const char *path, char *target, size_t target_size
 {
     char *file, *folder = NULL, *absolute = NULL;
     const char *slash, *name;
-    int length = -1;
 
     if (!*path)
         return ASJ_ERROR_FILE;
@@ -169,12 +168,14 @@ asj_status asj_system_resolve(const char *path, char *target, size_t target_size
         folder[slash - file + 1] = '\0';
     absolute = folder ? realpath(folder, NULL) : NULL;
     const int no_memory = !folder || (!absolute && errno == ENOMEM);
-    if (absolute)
-        length = snprintf(target, target_size, "%s/%s", absolute[1] ? absolute : "", name); /* "/" ends in its slash */
+    const char *parent = absolute && absolute[1] ? absolute : ""; /* "/" ends in its slash */
+    const int fits = absolute && strlen(parent) + strlen(name) + sizeof "/" <= target_size;
+    if (fits)
+        snprintf(target, target_size, "%s/%s", parent, name);
     free(absolute);
     free(folder);
     free(file);
     if (no_memory)
         return ASJ_ERROR_MEMORY;
-    return length >= 0 && (size_t)length < target_size ? ASJ_OK : ASJ_ERROR_FILE;
+    return fits ? ASJ_OK : ASJ_ERROR_FILE;
 }

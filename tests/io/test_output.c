@@ -249,6 +249,26 @@ static void new_files_follow_the_umask(void **state)
     assert_int_equal(info.st_size, 0);
 }
 
+/* Too little room leaves what was there. */
+static void targets_need_room(void **state)
+{
+    char target[4096] = "", again[4096] = "kept";
+    (void)state;
+    assert_int_equal(asj_output_target(in_folder("./named"), target, sizeof target), ASJ_OK);
+    const size_t size = strlen(target) + 1;
+    for (size_t room = 0; room < size; room++)
+        assert_int_equal(asj_output_target(in_folder("named"), again, room), ASJ_ERROR_FILE);
+    assert_string_equal(again, "kept");
+    assert_int_equal(asj_output_target(in_folder("named"), again, size), ASJ_OK);
+    assert_string_equal(again, target);
+    assert_int_equal(asj_output_target("/named", again, sizeof "/named" - 1), ASJ_ERROR_FILE);
+    assert_int_equal(asj_output_target("/named", again, sizeof "/named"), ASJ_OK);
+    assert_string_equal(again, "/named");
+    assert_int_equal(asj_output_target(in_folder("missing/x"), again, sizeof again), ASJ_ERROR_FILE);
+    assert_int_equal(asj_output_target(NULL, again, sizeof again), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_output_target("x", NULL, 0), ASJ_ERROR_ARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -256,7 +276,7 @@ int main(void)
         cmocka_unit_test(full_disk),                    cmocka_unit_test(full_disk_under_every_writer),
         cmocka_unit_test(devices_are_written_directly), cmocka_unit_test(standard_output),
         cmocka_unit_test(paths_that_cannot_be_written), cmocka_unit_test(links_and_permissions_stay),
-        cmocka_unit_test(new_files_follow_the_umask),
+        cmocka_unit_test(new_files_follow_the_umask),   cmocka_unit_test(targets_need_room),
     };
     return cmocka_run_group_tests_name("io: output", tests, make_folder, remove_folder);
 }
