@@ -67,7 +67,8 @@ asj_status asj_fail(asj_context *context, asj_status status, const char *format,
     ASJ_PRINTF(3, 4);
 
 /* Around a step that the answer does not need. What is beyond a limit there is left out: asj_fail() tells of it as information and
- * not as what went wrong, and the end makes ASJ_OK of ASJ_ERROR_LIMIT. There may be others inside. */
+ * not as what went wrong, and the end makes ASJ_OK of ASJ_ERROR_LIMIT, which depends on the images alone. What depends on the
+ * machine (memory, a device) stays an error: the answer would not be the same each time. There may be others inside. */
 void asj_optional_begin(asj_context *context);
 asj_status asj_optional_end(asj_context *context, asj_status status);
 

@@ -110,7 +110,8 @@ int32_t asj_exif_orientation(const unsigned char *block, size_t size)
 
 int32_t asj_mpf_has_views(const unsigned char *block, size_t size)
 {
-    enum { ENTRY = 16, KIND = 0xff0000, VIEWS = 0x020000 }; /* bytes of a picture's entry, which begins with its kind */
+    /* bytes of a picture's entry, which begins with its kind. "Undefined" (0) is none of the views: so telephones call gain maps */
+    enum { ENTRY = 16, KIND = 0xff0000, VIEWS = 0x020000 };
     const tiff_bytes tiff = open_tiff(block, size);
     const size_t entry = find_entry(&tiff, TAG_MPF_ENTRIES);
     if (!entry || tiff.is_big)
