@@ -20,7 +20,6 @@
  * number (tests/accuracy/tried/detection.md, "Steadiness"). */
 #include "steady.h"
 #include "core/angle.h"
-#include "strip.h"
 #include "tilt.h"
 
 #include <math.h>
@@ -88,14 +87,15 @@ static void best_of_each(const asj_frame *frame, const asj_detect_options *optio
 }
 
 void asj_keep_steady(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                     asj_hypothesis *hypothesis)
+                     const asj_strip *known, asj_hypothesis *hypothesis)
 {
-    asj_strip strips[ASJ_MAX_BRANCHES];
+    asj_strip measured[ASJ_MAX_BRANCHES];
+    const asj_strip *strips = known ? known : measured;
     double best[ASJ_MAX_BRANCHES];
     int keep[ASJ_MAX_BRANCHES], steady = 0;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
+    for (int32_t i = 0; i < hypothesis->branch_count && !known; i++) {
         const asj_strip_line line = {hypothesis->x, hypothesis->y, hypothesis->branches[i].angle, hypothesis->branches[i].length};
-        strips[i] = asj_strip_test(context, frame, options, &line);
+        measured[i] = asj_strip_test(context, frame, options, &line);
     }
     best_of_each(frame, options, hypothesis, strips, best);
     for (int32_t i = 0; i < hypothesis->branch_count; i++) {

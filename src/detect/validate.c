@@ -109,8 +109,9 @@ static void merge(const asj_detect_options *options, const asj_hypothesis *hypot
 
 /* Whether a strip of some length is meaningful, or nearly so: the angle will still become better. */
 static int may_be_meaningful(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                             const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
+                             const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch, asj_strip *strip)
 {
+    (void)strip;
     const double limit = log(options->epsilon) + ASJ_EARLY_LOG_NFA;
     const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LENGTH};
     const asj_strip_line longer = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LONGER};
@@ -123,14 +124,14 @@ static double early_opening(const asj_detect_options *options)
     return fmax(options->minimum_opening - EARLY_OPENING, 0) * ASJ_DEGREE;
 }
 
-/* What is asked of a branch, and whether it may be left. */
+/* What is asked of a branch, and whether it may be left. The strip along it, whole, is what judge() leaves behind. */
 typedef int (*question)(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                        const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch);
+                        const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch, asj_strip *strip);
 
 /* Asks the branches, the weakest first, as long as two of those that may be left open by `least` radians; returns whether they
  * do. */
 static int ask_all(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, question ask,
-                   double least, asj_hypothesis *hypothesis, int *answers)
+                   double least, asj_hypothesis *hypothesis, int *answers, asj_strip *strips)
 {
     const int32_t count = hypothesis->branch_count;
     asj_hypothesis_branch *const branches = hypothesis->branches;
@@ -145,7 +146,7 @@ static int ask_all(const asj_context *context, const asj_frame *frame, const asj
         answers[i] = 1;
     int opens = asj_hypothesis_opens(hypothesis, answers, least);
     for (int32_t k = 0; k < count && opens; k++) {
-        answers[order[k]] = ask(context, frame, options, hypothesis, &branches[order[k]]);
+        answers[order[k]] = ask(context, frame, options, hypothesis, &branches[order[k]], &strips[order[k]]);
         opens = answers[order[k]] || asj_hypothesis_opens(hypothesis, answers, least);
     }
     return opens;
@@ -155,9 +156,10 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
                       asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
+    asj_strip strips[ASJ_MAX_BRANCHES];
     if (!options->strip_test)
         return;
-    const int opens = ask_all(context, frame, options, may_be_meaningful, early_opening(options), hypothesis, keep);
+    const int opens = ask_all(context, frame, options, may_be_meaningful, early_opening(options), hypothesis, keep, strips);
     asj_hypothesis_select(hypothesis, keep);
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
 }
@@ -172,9 +174,10 @@ static int has_moved_far(const asj_detect_options *options, const asj_hypothesis
 
 /* Whether it seems to reach the junction. Ends of soft edges are uncertain. */
 static int may_reach(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                     const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
+                     const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch, asj_strip *strip)
 {
     const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
+    (void)strip;
     return branch->width > SOFT ||
            asj_strip_near_strength(context, frame, options, &line) >= options->near_strength - ORIENTED_STRENGTH;
 }
@@ -183,9 +186,10 @@ void asj_reject_oriented(const asj_context *context, const asj_frame *frame, con
                          asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
+    asj_strip strips[ASJ_MAX_BRANCHES];
     if (!options->strip_test || hypothesis->branch_count < 2) /* those of complete_step.c have one */
         return;
-    const int opens = ask_all(context, frame, options, may_reach, early_opening(options), hypothesis, keep);
+    const int opens = ask_all(context, frame, options, may_reach, early_opening(options), hypothesis, keep, strips);
     asj_hypothesis_select(hypothesis, keep);
     if (!opens || has_moved_far(options, hypothesis, ORIENTED_MOVE))
         hypothesis->branch_count = 0;
@@ -199,24 +203,24 @@ static double least_length(const asj_frame *frame, const asj_detect_options *opt
 
 /* Returns whether the branch is to be kept, ALONE, only WITH_OTHERS, IF_OTHERS_OPEN; sets its number of false alarms then. */
 static int judge(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                 const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
+                 const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch, asj_strip *strip)
 {
     const double log_epsilon = log(options->epsilon), explained = hypothesis->explained;
     asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
     if (branch->length < least_length(frame, options) || branch->length <= 0 || fabs(branch->offset) > LARGEST_OFFSET ||
         (options->ignore_frame && on_frame(frame, hypothesis, branch)))
         return NOT_AT_ALL;
-    const asj_strip strip = asj_strip_test(context, frame, options, &line);
-    branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, &strip, branch->width, explained) : strip.log_nfa;
+    *strip = asj_strip_test(context, frame, options, &line);
+    branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, strip, branch->width, explained) : strip->log_nfa;
     if (options->strip_test && branch->log_nfa > log_epsilon && frame->octave > 0 && branch->width > SOFT) {
         line.length -= SOFT_END * branch->width;
         const asj_strip shorter = asj_strip_test(context, frame, options, &line);
         branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width, explained));
     }
-    if (!reaches(frame, options, branch, &strip) || (!options->strip_test && asj_is_tilted(options, &strip.sums)))
+    if (!reaches(frame, options, branch, strip) || (!options->strip_test && asj_is_tilted(options, &strip->sums)))
         return NOT_AT_ALL;
     if (!options->strip_test || branch->log_nfa <= log_epsilon)
-        return options->strip_test && frame->octave <= 0 && strip.near_share < LEAST_IMAGE_SHARE ? IF_OTHERS_OPEN : ALONE;
+        return options->strip_test && frame->octave <= 0 && strip->near_share < LEAST_IMAGE_SHARE ? IF_OTHERS_OPEN : ALONE;
     const int pairs = frame->octave > 0 && (branch->width <= SOFT || asj_blurred_corner_is_sure(hypothesis));
     return pairs && branch->log_nfa <= log_epsilon + 0.5 * log_places(frame) ? WITH_OTHERS : NOT_AT_ALL;
 }
@@ -246,8 +250,8 @@ static void judge_pairs(const asj_frame *frame, const asj_detect_options *option
 }
 
 /* Where the branches that are left meet: one that was none should not say where the junction is. Of soft ones the lines do not say
- * it. Not where the strip does not judge: what goes there are twins and frames. */
-static void meet_again(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+ * it. Not where the strip does not judge: what goes there are twins and frames. Returns whether the lines are others now. */
+static int meet_again(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                        asj_hypothesis *hypothesis)
 {
     const asj_hypothesis before = *hypothesis;
@@ -255,7 +259,7 @@ static void meet_again(const asj_context *context, const asj_frame *frame, const
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         soft |= hypothesis->branches[i].width > ASJ_SOFT_FROM;
     if (!options->strip_test || options->refinement != ASJ_REFINE_LINE_FIT)
-        return;
+        return 0;
     if (soft)
         asj_blurred_corner(context, frame, hypothesis);
     else
@@ -266,30 +270,35 @@ static void meet_again(const asj_context *context, const asj_frame *frame, const
     worse |= !asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE);
     if (worse)
         *hypothesis = before;
+    return !worse;
 }
 
 /* Lines over whole branches may move the junction by max_move again after those of the first fit (locate.c); what moves farther has
  * drifted to another edge. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
-    int keep[ASJ_MAX_BRANCHES];
+    int keep[ASJ_MAX_BRANCHES], moved = 0;
+    asj_strip strips[ASJ_MAX_BRANCHES];
     const int32_t count = hypothesis->branch_count;
     if (has_moved_far(options, hypothesis, 0) ||
-        !ask_all(context, frame, options, judge, options->minimum_opening * ASJ_DEGREE, hypothesis, keep)) {
+        !ask_all(context, frame, options, judge, options->minimum_opening * ASJ_DEGREE, hypothesis, keep, strips)) {
         hypothesis->branch_count = 0;
         return;
     }
     judge_pairs(frame, options, hypothesis, keep);
     merge(options, hypothesis, keep);
+    for (int32_t i = 0, kept = 0; i < count; i++)
+        if (keep[i])
+            strips[kept++] = strips[i];
     asj_hypothesis_select(hypothesis, keep);
     if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE)) {
         hypothesis->branch_count = 0;
         return;
     }
     if (hypothesis->branch_count < count)
-        meet_again(context, frame, options, hypothesis);
+        moved = meet_again(context, frame, options, hypothesis);
     if (options->strip_test)
-        asj_keep_steady(context, frame, options, hypothesis);
+        asj_keep_steady(context, frame, options, moved ? NULL : strips, hypothesis);
     if (options->strip_test && asj_is_arc(frame, hypothesis, options->minimum_opening * ASJ_DEGREE))
         hypothesis->branch_count = 0;
     const asj_hypothesis unsorted = *hypothesis;
@@ -298,21 +307,14 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         asj_hypothesis_insert(hypothesis, &unsorted.branches[i]);
 }
 
-static int is_tilted(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                     const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
-{
-    const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
-    const asj_strip strip = asj_strip_test(context, frame, options, &line);
-    return asj_is_tilted(options, &strip.sums);
-}
-
 int asj_validate_another(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
-    return judge(context, frame, options, hypothesis, branch) != NOT_AT_ALL &&
+    asj_strip strip;
+    return judge(context, frame, options, hypothesis, branch, &strip) != NOT_AT_ALL &&
            branch->log_nfa <= log(options->epsilon) - ANOTHER_LOG && fabs(branch->offset) <= LARGEST_OFFSET_OF_ANOTHER &&
            asj_hypothesis_is_free(hypothesis, branch->angle, asj_joined_apart(options)) &&
-           !is_tilted(context, frame, options, hypothesis, branch);
+           !asj_is_tilted(options, &strip.sums);
 }
 
 void asj_validate_lengths(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)

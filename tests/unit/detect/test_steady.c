@@ -99,7 +99,7 @@ static void test_sum(void **state)
             const double sum = naive_sum(f, &hypothesis);
             if (fabs(sum) < 1e-9)
                 continue;
-            asj_keep_steady(f->context, &f->frame, &f->options, &hypothesis);
+            asj_keep_steady(f->context, &f->frame, &f->options, NULL, &hypothesis);
             assert_int_equal(hypothesis.branch_count, sum > 0 ? 2 : 0);
             stay += sum > 0;
             go += sum < 0;
@@ -129,15 +129,15 @@ static void test_tilted(void **state)
     const asj_strip across = strip_of(f, &hypothesis, 1);
     assert_true(asj_is_tilted(&f->options, &across.sums));
     asj_hypothesis sure = hypothesis, untold = hypothesis;
-    asj_keep_steady(f->context, &f->frame, &f->options, &hypothesis);
+    asj_keep_steady(f->context, &f->frame, &f->options, NULL, &hypothesis);
     assert_int_equal(hypothesis.branch_count, 2);
     assert_true(hypothesis.branches[0].angle == directions[0] && hypothesis.branches[1].angle == directions[2]);
     sure.location_variance = 1e-3;
     sure.branches[1].log_nfa = -40 * ASJ_LN_10;
-    asj_keep_steady(f->context, &f->frame, &f->options, &sure);
+    asj_keep_steady(f->context, &f->frame, &f->options, NULL, &sure);
     assert_int_equal(sure.branch_count, 3);
     f->options.max_tilt = 0;
-    asj_keep_steady(f->context, &f->frame, &f->options, &untold);
+    asj_keep_steady(f->context, &f->frame, &f->options, NULL, &untold);
     assert_int_equal(untold.branch_count, 3);
     asj_detect_options_init(&f->options);
 }
@@ -148,7 +148,7 @@ static void test_no_opening(void **state)
     const fixture *f = *state;
     asj_hypothesis hypothesis = corner(18);
     hypothesis.branches[1] = hypothesis.branches[0];
-    asj_keep_steady(f->context, &f->frame, &f->options, &hypothesis);
+    asj_keep_steady(f->context, &f->frame, &f->options, NULL, &hypothesis);
     assert_int_equal(hypothesis.branch_count, 0);
 }
 
