@@ -189,7 +189,7 @@ static int32_t may_upsample(const search *s, const asj_stretch *stretch)
 {
     const asj_stretch twice = {2 * stretch->x, 2 * stretch->y};
     const int32_t one_is_enough = asks_closer(s) && answered(s, s->best) == 0;
-    const uint32_t enough = asj_looks_may_settle(s->best) ? 0 : one_is_enough ? 1 : (uint32_t)s->options->upsample_from;
+    const uint32_t enough = asj_looks_may_resolve(s->best) ? 0 : one_is_enough ? 1 : (uint32_t)s->options->upsample_from;
     int32_t may = may_choose_scale(s) && s->best->match_count >= enough;
     for (int32_t n = 0; n < 2 && may; n++)
         may = pixels_of(s->images[n]) * fmin(1, stretch->x * stretch->y) <= LARGEST && asj_look_fits(s->images[n], &twice);

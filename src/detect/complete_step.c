@@ -72,7 +72,7 @@ static void start_all(const asj_detection_run *run, const asj_missed *missed, as
 static asj_status complete(asj_detection_run *run, const asj_missed *missed)
 {
     asj_detection_run branches = *run;
-    branches.settled = branches.hypothesis_count = 0;
+    branches.validated = branches.hypothesis_count = 0;
     for (size_t i = 0; i < run->hypothesis_count; i++)
         branches.hypothesis_count += (size_t)missed[i].count;
     branches.hypotheses = asj_allocate_list(&run->context->memory, asj_detection_run_room(branches.hypothesis_count),

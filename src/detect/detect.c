@@ -51,10 +51,10 @@ static asj_status choose_again(asj_detection_run *run)
     if (!run->options->strip_test || run->guess_count == 0)
         return ASJ_OK;
     run->choice = 1;
-    run->settled = run->hypothesis_count;
+    run->validated = run->hypothesis_count;
     asj_guess_sort(run->guesses, run->guess_count);
     const asj_status status = choose(run, 0.96, 0.02);
-    run->settled = 0;
+    run->validated = 0;
     return status;
 }
 

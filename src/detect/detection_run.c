@@ -181,7 +181,7 @@ void asj_detection_run_clear(asj_detection_run *run)
     run->isotropic = NULL;
     run->guesses = NULL;
     run->hypotheses = NULL;
-    run->candidate_count = run->isotropic_count = run->hypothesis_count = run->settled = 0;
+    run->candidate_count = run->isotropic_count = run->hypothesis_count = run->validated = 0;
     run->choice = 0;
     run->guess_count = run->guess_capacity = run->hypothesis_capacity = 0;
 }
@@ -228,12 +228,12 @@ static void work_on_some(const void *data, const asj_part *part)
 {
     const job *j = data;
     for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
-        j->work(j->run, &j->run->hypotheses[j->run->settled + (size_t)i]);
+        j->work(j->run, &j->run->hypotheses[j->run->validated + (size_t)i]);
 }
 
 asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t least, asj_hypothesis_work work)
 {
-    const int64_t count = (int64_t)(run->hypothesis_count - run->settled);
+    const int64_t count = (int64_t)(run->hypothesis_count - run->validated);
     asj_watch watch;
     const job j = {run, &watch, work};
     asj_watch_start(&watch, run->context, stage);
@@ -243,7 +243,7 @@ asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t
 
 void asj_detection_run_drop_rejected(asj_detection_run *run)
 {
-    size_t kept = run->settled;
+    size_t kept = run->validated;
     for (size_t i = kept; i < run->hypothesis_count; i++)
         if (run->hypotheses[i].branch_count > 0)
             run->hypotheses[kept++] = run->hypotheses[i];

@@ -56,7 +56,7 @@ typedef struct asj_detection_run {
     size_t hypothesis_capacity;
     size_t hypothesis_count;
     int32_t choice;                  /* 0; 1 = of what a better one has suppressed that failed (detect.c) */
-    size_t settled;                  /* hypotheses at the front that the first choice has validated */
+    size_t validated;                /* hypotheses at the front that the first choice has validated */
     asj_hypothesis *all;             /* of the octaves that are done, in pixels of the image */
     size_t all_count, all_capacity;
     asj_hypothesis *found;           /* of the planes that are done, likewise */
@@ -122,11 +122,11 @@ size_t asj_detection_run_room(size_t count);
 /* What is done to one hypothesis, without a look at the others. */
 typedef void (*asj_hypothesis_work)(const asj_detection_run *run, asj_hypothesis *hypothesis);
 
-/* Does it to every hypothesis that is not settled, by the threads of the context, until the caller stops it. `least`: so many of
+/* Does it to every hypothesis that is not validated, by the threads of the context, until the caller stops it. `least`: so many of
  * them make a thread worth waking. */
 asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t least, asj_hypothesis_work work);
 
-/* Rejected hypotheses that are not settled go. */
+/* Rejected hypotheses that are not validated go. */
 void asj_detection_run_drop_rejected(asj_detection_run *run);
 
 /* Reports that the stage is done up to here, as a part of the pass over one octave; ASJ_ERROR_CANCELLED when the caller wants to

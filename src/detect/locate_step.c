@@ -4,7 +4,7 @@
  *
  * The most meaningful come first, as suppression has it (suppress.c). So what stays of the chunks before suppresses whatever comes
  * within its reach, and a guess well within that is not worth a fit. Guesses that are suppressed, fitted or not, are kept: what
- * suppressed them may fail later, and then they are located after all, apart from what is settled by then (detect.c). */
+ * suppressed them may fail later, and then they are located after all, apart from what is valid by then (detect.c). */
 #include "blurred_corner.h"
 #include "edge_width.h"
 #include "locate.h"
@@ -123,7 +123,7 @@ static asj_status locate_chunks(asj_detection_run *run, asj_close_grid *apart, a
     asj_status status = keep(run, NULL, 0);
     size_t hidden = 0;
     asj_watch watch;
-    for (size_t i = 0; i < run->settled; i++)
+    for (size_t i = 0; i < run->validated; i++)
         mark(run, i, apart);
     asj_watch_start(&watch, context, ASJ_STAGE_LOCATE);
     for (size_t first = 0, next = 0; next < run->guess_count && status == ASJ_OK; first = next) {
@@ -144,7 +144,7 @@ static asj_status locate_all(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
     const asj_frame *frame = run->frame;
-    const size_t count = asj_close_grid_cells(run->guess_count + run->settled, frame->width, frame->height);
+    const size_t count = asj_close_grid_cells(run->guess_count + run->validated, frame->width, frame->height);
     asj_hypothesis *chunk = asj_allocate(memory, AT_ONCE, sizeof *chunk);
     int32_t *cells = asj_allocate_list(memory, count, sizeof *cells);
     asj_status status;
@@ -172,7 +172,7 @@ static void reject_known(const void *data, const asj_part *part)
 {
     const known_job *j = data;
     for (int64_t i = part->first; i < part->end; i++) {
-        asj_hypothesis *hypothesis = &j->run->hypotheses[j->run->settled + (size_t)i];
+        asj_hypothesis *hypothesis = &j->run->hypotheses[j->run->validated + (size_t)i];
         asj_edge_widths(j->run->frame, hypothesis); /* which say where lines are fitted next (refine.c) */
         if (asj_octave_is_known(j->known, hypothesis, ASJ_KNOWN_LINES))
             hypothesis->branch_count = 0;
@@ -183,7 +183,7 @@ static asj_status drop_known(asj_detection_run *run)
 {
     asj_octave_known known;
     const asj_status status = asj_detection_run_known(run, &known);
-    const int64_t count = (int64_t)(run->hypothesis_count - run->settled);
+    const int64_t count = (int64_t)(run->hypothesis_count - run->validated);
     if (status != ASJ_OK || !known.finer)
         return status;
     const known_job j = {run, &known};

@@ -61,7 +61,7 @@ static int32_t first_radius(const asj_detection_run *run, const asj_hypothesis *
 static size_t list_rays(const asj_detection_run *run, int32_t votes, asj_ray *rays, asj_hypothesis_branch **branches)
 {
     size_t count = 0;
-    for (size_t i = run->settled; i < run->hypothesis_count; i++) {
+    for (size_t i = run->validated; i < run->hypothesis_count; i++) {
         asj_hypothesis *hypothesis = &run->hypotheses[i];
         for (int32_t b = 0; b < hypothesis->branch_count; b++) {
             asj_hypothesis_branch *branch = &hypothesis->branches[b];
@@ -137,14 +137,14 @@ static asj_status scan_all(asj_detection_run *run, const asj_scan *scan)
 {
     asj_memory *memory = &run->context->memory;
     size_t total = 0;
-    for (size_t i = run->settled; i < run->hypothesis_count; i++)
+    for (size_t i = run->validated; i < run->hypothesis_count; i++)
         total += (size_t)run->hypotheses[i].branch_count;
     asj_ray *rays = asj_allocate_list(memory, asj_detection_run_room(total), sizeof *rays);
     asj_hypothesis_branch **branches = asj_allocate_list(memory, asj_detection_run_room(total), sizeof *branches);
     asj_status status = ASJ_OK;
     if (rays && branches) {
-        if (run->hypothesis_count > run->settled)
-            asj_sort(run->hypotheses + run->settled, run->hypothesis_count - run->settled, sizeof *run->hypotheses, by_strip);
+        if (run->hypothesis_count > run->validated)
+            asj_sort(run->hypotheses + run->validated, run->hypothesis_count - run->validated, sizeof *run->hypotheses, by_strip);
         status = scan_branches(run, scan, 0, rays, branches);
         if (status == ASJ_OK)
             status = scan_votes(run, scan, rays, branches);

@@ -115,7 +115,7 @@ static asj_status search_all(asj_detection_run *run, const lists *l)
 {
     asj_status status = ASJ_OK;
     size_t count = 0;
-    for (size_t i = run->settled; i < run->hypothesis_count && status == ASJ_OK; i++) {
+    for (size_t i = run->validated; i < run->hypothesis_count && status == ASJ_OK; i++) {
         asj_hypothesis *hypothesis = &run->hypotheses[i];
         for (int32_t b = 0; b < hypothesis->branch_count; b++) {
             l->hypotheses[count] = hypothesis;

@@ -175,14 +175,14 @@ asj_status asj_sizes_put_rejected(asj_detection_run *run)
 {
     if (run->size > 0 || asj_sizes_of(run) == 1)
         return ASJ_OK;
-    const size_t most = run->rejected_count + run->hypothesis_count - run->settled;
+    const size_t most = run->rejected_count + run->hypothesis_count - run->validated;
     void *list = run->rejected;
     const asj_status status = asj_grow(&run->context->memory, &list, &run->rejected_capacity, asj_detection_run_room(most),
                                        sizeof *run->rejected, run->rejected_count);
     run->rejected = list;
     if (status != ASJ_OK)
         return asj_fail(run->context, status, "no memory for %zu places", most);
-    for (size_t i = run->settled; i < run->hypothesis_count; i++)
+    for (size_t i = run->validated; i < run->hypothesis_count; i++)
         if (run->hypotheses[i].branch_count == 0 && (run->octave > 0 || run->hypotheses[i].log_nfa <= NEARLY))
             run->rejected[run->rejected_count++] = place_of(run, &run->hypotheses[i]);
     return ASJ_OK;
@@ -192,7 +192,7 @@ asj_status asj_sizes_put_rejected(asj_detection_run *run)
 void asj_sizes_tell_votes(asj_detection_run *run)
 {
     const double reach = ASJ_SIZES_NEAR + MOVES * asj_octave_scale(run->octave);
-    size_t kept = run->settled;
+    size_t kept = run->validated;
     if (run->size == 0)
         return;
     for (size_t i = kept; i < run->hypothesis_count; i++) {

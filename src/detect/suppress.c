@@ -44,17 +44,17 @@ int asj_suppress_hides(const asj_hypothesis *hypotheses, const asj_close_grid *g
     return 0;
 }
 
-size_t asj_suppress(asj_hypothesis *hypotheses, size_t settled, size_t count, int32_t width, int32_t height, int32_t *cells)
+size_t asj_suppress(asj_hypothesis *hypotheses, size_t validated, size_t count, int32_t width, int32_t height, int32_t *cells)
 {
     asj_close_grid grid = asj_close_grid_start(width, height, cells);
-    size_t valid = settled, kept = settled;
-    for (size_t i = 0; i < settled; i++)
+    size_t valid = validated, kept = validated;
+    for (size_t i = 0; i < validated; i++)
         asj_close_grid_add(&grid, asj_close_grid_cell(&grid, hypotheses[i].x, hypotheses[i].y), i);
-    for (size_t i = settled; i < count; i++)
+    for (size_t i = validated; i < count; i++)
         if (hypotheses[i].branch_count >= 2)
             hypotheses[valid++] = hypotheses[i];
-    asj_suppress_sort(hypotheses + settled, valid - settled);
-    for (size_t i = settled; i < valid; i++) {
+    asj_suppress_sort(hypotheses + validated, valid - validated);
+    for (size_t i = validated; i < valid; i++) {
         if (asj_suppress_hides(hypotheses, &grid, hypotheses[i].x, hypotheses[i].y, 0))
             continue;
         if (kept < i)
@@ -72,7 +72,8 @@ asj_status asj_suppress_all(asj_detection_run *run)
     int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
     if (!cells)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
-    run->hypothesis_count = asj_suppress(run->hypotheses, run->settled, run->hypothesis_count, frame->width, frame->height, cells);
+    run->hypothesis_count = asj_suppress(run->hypotheses, run->validated, run->hypothesis_count, frame->width, frame->height,
+                                         cells);
     asj_release(&run->context->memory, cells);
     return ASJ_OK;
 }

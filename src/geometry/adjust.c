@@ -206,10 +206,10 @@ void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *li
 {
     asj_probabilities(set, &like->view, 1, &scratch->score, scratch->probability);
     for (int32_t round = 0; round < rounds; round++) {
-        const int32_t settled = round >= LIKE_ROUNDS;
-        if (settled)
+        const int32_t own = round >= LIKE_ROUNDS;
+        if (own)
             asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
-        if (!step(set, model, scratch->probability, settled ? 1 : WIDE, FREE))
+        if (!step(set, model, scratch->probability, own ? 1 : WIDE, FREE))
             break;
     }
     model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);

@@ -8,8 +8,8 @@
  *     nothing does.                                                                                            decide()
  *   - Images that repeat themselves need more than other images do, and upsampled ones that do so leave what the
  *     images accept open where they have much more evidence for another motion.                 repeats(), is_outdone()
- *   - What the images leave open the upsampled ones settle: by the same motion or its rival, or by another one
- *     with more evidence; but not upside down.                                            settles(), look_beyond()
+ *   - What the images leave open the upsampled ones resolve: by the same motion or its rival, or by another one
+ *     with more evidence; but not upside down.                                            resolves(), look_beyond()
  *   - The images' colours answer where there is no geometry yet or none that is sure.                          asj_looks_take()
  * Pictures (../geometry/picture_agreement.c) tell a motion from one that is far from it, and not from one that is nearly the same:
  * there it is the planes that agree or not.                                              agrees_better(), is_convincing()
@@ -189,7 +189,7 @@ static int32_t is_upside_down(const asj_geometry *g)
 }
 
 /* Have the images a rival that is no chance by itself? Then things repeat, and they do so in the upsampled images, too, whose
- * rivals the matcher may have lost: it makes neighbours agree on one period. So only OUTNUMBERS times the evidence settles that. */
+ * rivals the matcher may have lost: it makes neighbours agree on one period. So only OUTNUMBERS times the evidence tells. */
 static int32_t repeats(const asj_geometry *own)
 {
     return own->status == ASJ_GEOMETRY_AMBIGUOUS && own->has_rival && own->rival_log10_nfa < ASJ_SURE_RIVAL;
@@ -208,15 +208,15 @@ static asj_looks decide(const asj_geometry *own, const asj_geometry *upsampled)
     if (!own->only_turns && own->model == ASJ_GEOMETRY_HOMOGRAPHY && upsampled->model == ASJ_GEOMETRY_HOMOGRAPHY)
         return ASJ_LOOKS_PLANE;
     if (agrees_better(upsampled, own))
-        return ASJ_LOOKS_SETTLED;
+        return ASJ_LOOKS_RESOLVED;
     if (agrees_better(own, upsampled))
         return ASJ_LOOKS_BY_IMAGES;
     if (upsampled->log10_nfa < OUTWEIGHS * own->log10_nfa)
-        return ASJ_LOOKS_SETTLED;
+        return ASJ_LOOKS_RESOLVED;
     if (is_upside_down(upsampled) && !is_upside_down(own))
         return ASJ_LOOKS_BY_IMAGES;
     return is_upside_down(own) && !is_upside_down(upsampled) && own->log10_nfa > OUTWEIGHS * upsampled->log10_nfa
-               ? ASJ_LOOKS_SETTLED : ASJ_LOOKS_DISPUTED;
+               ? ASJ_LOOKS_RESOLVED : ASJ_LOOKS_DISPUTED;
 }
 
 /* Of two poses that do not contradict each other: is `a` known better, and from much more evidence? */
@@ -234,40 +234,40 @@ static asj_looks compare(const asj_geometry *own, const asj_geometry *upsampled)
         return decide(own, upsampled);
     if (is_surer(upsampled, own) && MUCH_SURER * MUCH_SURER * uncertainty(upsampled) < uncertainty(own) &&
         upsampled->log10_nfa < SURELY && !have_same_pose(own, upsampled))
-        return ASJ_LOOKS_SETTLED;
+        return ASJ_LOOKS_RESOLVED;
     return uncertainty(upsampled) <= uncertainty(own) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
 }
 
-int32_t asj_looks_may_settle(const asj_match_result *own)
+int32_t asj_looks_may_resolve(const asj_match_result *own)
 {
     return asj_geometry_is_open(&own->geometry) && own->geometry.model == ASJ_GEOMETRY_ESSENTIAL;
 }
 
-/* Does a motion settle what the images have rivals for or leave open? Where it is their best one or its rival it does: chance does
+/* Does a motion resolve what the images have rivals for or leave open? Where it is their best one or its rival it does: chance does
  * not bring one motion to within SAME_POSE twice. Another one needs more evidence. No matches have to come again for that: where
  * things repeat those of the images were matched by the period. */
-static int32_t settles(const asj_geometry *upsampled, const asj_geometry *own)
+static int32_t resolves(const asj_geometry *upsampled, const asj_geometry *own)
 {
     return upsampled->status == ASJ_GEOMETRY_ACCEPTED && upsampled->has_pose &&
            (have_same_pose(own, upsampled) || is_rival_of(own, upsampled) || surpasses(upsampled, own));
 }
 
-/* Of images that have rivals or leave the motion open. Without matches of their own only what settles it counts. Nothing that is
+/* Of images that have rivals or leave the motion open. Without matches of their own only what resolves it counts. Nothing that is
  * upside down does: frames and windows match themselves so, in either look. And no motion undoes that the camera only turns: of
- * thousands of matches the errors that they have in common look like a small step. What does not settle it may still hold by its
+ * thousands of matches the errors that they have in common look like a small step. What does not resolve it may still hold by its
  * matches, which upsampled.c asks, unless it is a motion that the images do not allow. */
 static asj_looks look_beyond(const asj_match_result *own, const asj_geometry *upsampled)
 {
     const asj_geometry *a = &own->geometry;
-    const int32_t settled = settles(upsampled, a);
-    if (own->match_count == 0 && !settled)
+    const int32_t resolved = resolves(upsampled, a);
+    if (own->match_count == 0 && !resolved)
         return ASJ_LOOKS_LOST;
     if (upsampled->status != ASJ_GEOMETRY_ACCEPTED)
         return ASJ_LOOKS_BY_UPSAMPLED;
     if (is_upside_down(upsampled) || !upsampled->has_pose || a->only_turns)
         return ASJ_LOOKS_LOST;
-    if (settled)
-        return ASJ_LOOKS_SETTLED;
+    if (resolved)
+        return ASJ_LOOKS_RESOLVED;
     return a->status == ASJ_GEOMETRY_DEGENERATE && contradicts(a, upsampled) ? ASJ_LOOKS_LOST : ASJ_LOOKS_BY_UPSAMPLED;
 }
 
@@ -295,7 +295,7 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsa
                accepted && !tells_motion(a) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
     if (repeats(a) && !(accepted && b->log10_nfa < OUTNUMBERS * a->log10_nfa))
         return ASJ_LOOKS_LOST;
-    return asj_looks_may_settle(own) ? look_beyond(own, b) : ASJ_LOOKS_BY_UPSAMPLED;
+    return asj_looks_may_resolve(own) ? look_beyond(own, b) : ASJ_LOOKS_BY_UPSAMPLED;
 }
 
 static int32_t agrees_enough(const asj_geometry *g)
@@ -314,12 +314,12 @@ int32_t asj_looks_want_other(const asj_match_result *own)
 {
     const asj_geometry *g = &own->geometry;
     if (g->status == ASJ_GEOMETRY_AMBIGUOUS)
-        return asj_looks_may_settle(own) && !repeats(g);
+        return asj_looks_may_resolve(own) && !repeats(g);
     return g->status != ASJ_GEOMETRY_NOT_ASKED && !is_enough(g);
 }
 
 /* Where the images have chance or too little, whatever the other look accepts. Otherwise no pose is no answer, nor is one that is
- * upside down, nor any where the camera only turns. Rivals and motions that stay open it settles as the upsampled images do, and a
+ * upside down, nor any where the camera only turns. Rivals and motions that stay open it resolves as the upsampled images do, and a
  * motion that stays open also when the images allow it. A pose gives way to another one that surpasses it, or to a surer one. */
 int32_t asj_looks_take(const asj_match_result *own, const asj_match_result *other)
 {
@@ -331,6 +331,6 @@ int32_t asj_looks_take(const asj_match_result *own, const asj_match_result *othe
     if (!b->has_pose || is_upside_down(b) || a->only_turns)
         return 0;
     if (a->status == ASJ_GEOMETRY_AMBIGUOUS)
-        return settles(b, a);
+        return resolves(b, a);
     return surpasses(b, a) || (!tells_motion(a) && !contradicts(a, b)) || (a->has_pose && is_surer(b, a));
 }

@@ -10,8 +10,8 @@
 typedef enum asj_looks {
     ASJ_LOOKS_BY_UPSAMPLED, /* that of the upsampled images, if they have one, where their matches hold; else that of the images */
     ASJ_LOOKS_BY_IMAGES,    /* the accepted one of the images, which judges the matches of both where these hold */
-    ASJ_LOOKS_SETTLED,      /* that of the upsampled images, whether or not their matches hold */
-    ASJ_LOOKS_LOST,         /* that of the images, and nothing of the upsampled ones, which do not settle what is open */
+    ASJ_LOOKS_RESOLVED,     /* that of the upsampled images, whether or not their matches hold */
+    ASJ_LOOKS_LOST,         /* that of the images, and nothing of the upsampled ones, which do not resolve what is open */
     ASJ_LOOKS_PLANE,        /* as ASJ_LOOKS_BY_UPSAMPLED, but its pose is open: both accept a plane, with poses at odds */
     ASJ_LOOKS_DISPUTED      /* neither, and no match that either contradicts: both accept a motion, not the same, and nothing
                              * decides; or the upsampled ones have rivals with much more evidence than the images' */
@@ -29,8 +29,8 @@ int32_t asj_looks_want_other(const asj_match_result *own);
 /* .. and is what that look accepts the answer, in place of `own`? */
 int32_t asj_looks_take(const asj_match_result *own, const asj_match_result *other);
 
-/* Do the images leave a motion open that the upsampled ones may settle, even if the images have no match? */
-int32_t asj_looks_may_settle(const asj_match_result *own);
+/* Do the images leave a motion open that the upsampled ones may resolve, even if the images have no match? */
+int32_t asj_looks_may_resolve(const asj_match_result *own);
 
 /* Accepted, or one of several. */
 int32_t asj_looks_is_answer(const asj_geometry *g);

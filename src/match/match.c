@@ -247,7 +247,7 @@ static asj_match_options options_for(const asj_match_options *options, const asj
 }
 
 /* Do matches that are known say where those of the upsampled images lie? Fewer may all be wrong; and where a geometry was asked
- * that the images leave open, the upsampled ones settle it (looks.c) and are not told. */
+ * that the images leave open, the upsampled ones resolve it (looks.c) and are not told. */
 static int32_t says_where(const asj_match_options *options, const asj_known_matches *known)
 {
     return known && options->upsampled_search_radius > 0 && known->result->match_count >= ENOUGH_KNOWN &&

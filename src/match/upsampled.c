@@ -92,7 +92,7 @@ static int32_t holds(const asj_match_result *own, const asj_match_result *upsamp
         contradicted += found[n] == CONTRADICTED;
         added += looks == ASJ_LOOKS_BY_IMAGES && found[n] == NEW;
     }
-    return looks == ASJ_LOOKS_SETTLED ||
+    return looks == ASJ_LOOKS_RESOLVED ||
            (looks != ASJ_LOOKS_LOST && upsampled->match_count + added > own->match_count && again >= AGAIN * own->match_count &&
             contradicted <= MOST_CONTRADICTED * again);
 }
@@ -207,7 +207,7 @@ asj_status asj_upsampled_choose(asj_context *context, asj_match_result **own, as
 /* Worth while where the images themselves have matches, or leave a motion open, or have nothing to match. */
 static int is_worth(const asj_match_result *own)
 {
-    return own->match_count > 0 || asj_looks_may_settle(own) || own->l_junction_count1 == 0 ||
+    return own->match_count > 0 || asj_looks_may_resolve(own) || own->l_junction_count1 == 0 ||
            own->l_junction_count2 == 0;
 }
 

@@ -60,8 +60,8 @@ static void test_close(void **state)
     }
 }
 
-/* What an earlier choice has settled stays where it is and hides what is more meaningful; nothing else changes. */
-static void test_settled(void **state)
+/* What an earlier choice has validated stays where it is and hides what is more meaningful; nothing else changes. */
+static void test_validated(void **state)
 {
     asj_hypothesis h[] = {{.x = 20, .y = 20, .radius = 7, .branch_count = 2, .log_nfa = -5},
                           {.x = 40, .y = 20, .radius = 7, .branch_count = 2, .log_nfa = -9},
@@ -143,7 +143,7 @@ static void test_twins(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_settled), cmocka_unit_test(test_close), cmocka_unit_test(test_hides),
+        cmocka_unit_test(test_validated), cmocka_unit_test(test_close), cmocka_unit_test(test_hides),
         cmocka_unit_test(test_twins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

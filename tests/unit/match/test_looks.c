@@ -34,10 +34,10 @@ static void pictures_decide_between_poses(void **state)
     static const struct {
         double own, upsampled, own_nfa, upsampled_nfa;
         asj_looks looks;
-    } cases[] = {{.8, .5, -40, -90, ASJ_LOOKS_BY_IMAGES},  {.5, .8, -90, -40, ASJ_LOOKS_SETTLED},
+    } cases[] = {{.8, .5, -40, -90, ASJ_LOOKS_BY_IMAGES},  {.5, .8, -90, -40, ASJ_LOOKS_RESOLVED},
                  {.8, .7, -40, -90, ASJ_LOOKS_DISPUTED},   {.7, .8, -90, -40, ASJ_LOOKS_DISPUTED},
-                 {.8, .5, -30, -90, ASJ_LOOKS_BY_IMAGES},  {.8, .7, -30, -90, ASJ_LOOKS_SETTLED},
-                 {.8, 0, -30, -90, ASJ_LOOKS_SETTLED},     {0, .8, -40, -90, ASJ_LOOKS_DISPUTED}};
+                 {.8, .5, -30, -90, ASJ_LOOKS_BY_IMAGES},  {.8, .7, -30, -90, ASJ_LOOKS_RESOLVED},
+                 {.8, 0, -30, -90, ASJ_LOOKS_RESOLVED},     {0, .8, -40, -90, ASJ_LOOKS_DISPUTED}};
     (void)state;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_match_result own, upsampled;
@@ -52,12 +52,12 @@ static void pictures_decide_between_poses(void **state)
 
 /* The images' pose is known to `sd`, rad, and is a few degrees from that of the upsampled ones, known to .005: where that is four
  * times as well, and there is 1.25 times the evidence, it is the answer, whatever their matches are. */
-static void what_is_surer_by_far_settles(void **state)
+static void what_is_surer_by_far_is_taken(void **state)
 {
     static const struct {
         double sd, degrees, own_nfa, upsampled_nfa;
         asj_looks looks;
-    } cases[] = {{.13, 7, -72, -131, ASJ_LOOKS_SETTLED},      {.13, 7, -72, -91, ASJ_LOOKS_SETTLED},
+    } cases[] = {{.13, 7, -72, -131, ASJ_LOOKS_RESOLVED},      {.13, 7, -72, -91, ASJ_LOOKS_RESOLVED},
                  {.13, 7, -72, -89, ASJ_LOOKS_BY_UPSAMPLED},  {.13, 3, -72, -131, ASJ_LOOKS_BY_UPSAMPLED},
                  {.003, 7, -72, -131, ASJ_LOOKS_DISPUTED},    {.13, 7, -20, -34, ASJ_LOOKS_BY_UPSAMPLED},
                  {.018, 5, -72, -131, ASJ_LOOKS_BY_UPSAMPLED}};
@@ -72,12 +72,12 @@ static void what_is_surer_by_far_settles(void **state)
     }
 }
 
-/* Rivals of the images, which the upsampled ones or colours settle. */
-static void pictures_settle_what_is_ambiguous(void **state)
+/* Rivals of the images, which the upsampled ones or colours resolve. */
+static void pictures_resolve_what_is_ambiguous(void **state)
 {
     static const struct {
         double own, other, own_nfa, other_nfa, rival_nfa;
-        int32_t settled;
+        int32_t resolved;
     } cases[] = {{.5, .8, -40, -20, -38, 1},   {.7, .8, -40, -20, -38, 0},   {.8, .5, -40, -60, -38, 0},
                  {.8, .7, -40, -60, -38, 0},   {.74, .7, -40, -60, -38, 1},  {.54, .5, -40, -60, -38, 0},
                  {0, .8, -40, -20, -38, 0},    {.5, 0, -40, -60, -38, 1},    {.5, .8, -140, -20, -130, 0},
@@ -90,9 +90,9 @@ static void pictures_settle_what_is_ambiguous(void **state)
         own.geometry.rival_log10_nfa = cases[k].rival_nfa;
         make(&other, ASJ_GEOMETRY_ACCEPTED, cases[k].other_nfa, 0, cases[k].other);
         const asj_looks looks = asj_looks_of(&own, &other);
-        assert_int_equal(looks == ASJ_LOOKS_SETTLED, cases[k].settled);
+        assert_int_equal(looks == ASJ_LOOKS_RESOLVED, cases[k].resolved);
         const int32_t repeats = cases[k].rival_nfa < -100; /* then colours are not asked */
-        assert_int_equal(asj_looks_take(&own, &other), cases[k].settled && !repeats);
+        assert_int_equal(asj_looks_take(&own, &other), cases[k].resolved && !repeats);
         assert_int_equal(asj_looks_want_other(&own), !repeats);
     }
 }
@@ -189,7 +189,7 @@ static void little_knowledge_decides_nothing(void **state)
     for (int32_t which = 0; which < 2; which++) {
         make(&own, ASJ_GEOMETRY_ACCEPTED, -90, 20, .4);
         make(&upsampled, ASJ_GEOMETRY_ACCEPTED, -40, 0, .8);
-        assert_int_equal(asj_looks_of(&own, &upsampled), ASJ_LOOKS_SETTLED);
+        assert_int_equal(asj_looks_of(&own, &upsampled), ASJ_LOOKS_RESOLVED);
         (which ? &own : &upsampled)->geometry.picture_knowledge = 14;
         assert_int_equal(asj_looks_of(&own, &upsampled), ASJ_LOOKS_DISPUTED);
     }
@@ -199,8 +199,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_decide_between_poses),
-        cmocka_unit_test(what_is_surer_by_far_settles),
-        cmocka_unit_test(pictures_settle_what_is_ambiguous),
+        cmocka_unit_test(what_is_surer_by_far_is_taken),
+        cmocka_unit_test(pictures_resolve_what_is_ambiguous),
         cmocka_unit_test(rivals_with_much_evidence_are_a_dispute),
         cmocka_unit_test(rivals_of_which_none_is_accepted_are_a_dispute),
         cmocka_unit_test(little_agreement_is_looked_at_again),

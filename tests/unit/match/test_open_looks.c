@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* What the images leave open, or have rivals for: what the upsampled ones settle of it, and what they do not. */
+/* What the images leave open, or have rivals for: what the upsampled ones resolve of it, and what they do not. */
 #include "upsampled_results.h"
 
 /* The images have rivals, and none of their matches comes again: the upsampled images' motion is the answer when it is the images'
@@ -36,14 +36,14 @@ static void rivals_are_confirmed(void **state)
 
 /* Images without any match: only their own best motion, or its rival, or much more evidence is believed, and matches alone are
  * not. */
-static void without_matches_a_motion_is_settled(void **state)
+static void without_matches_a_motion_is_resolved(void **state)
 {
     static const struct {
         int32_t status; /* of the upsampled images */
         double log10_nfa, degrees, rival; /* that the images' best, and its rival, are off */
         asj_looks looks;
-    } cases[] = {{ASJ_GEOMETRY_ACCEPTED, -40, 30, 30, ASJ_LOOKS_SETTLED}, {ASJ_GEOMETRY_ACCEPTED, -34, 30, 30, ASJ_LOOKS_LOST},
-                 {ASJ_GEOMETRY_ACCEPTED, -12, 1, 30, ASJ_LOOKS_SETTLED},  {ASJ_GEOMETRY_ACCEPTED, -12, 30, 1, ASJ_LOOKS_SETTLED},
+    } cases[] = {{ASJ_GEOMETRY_ACCEPTED, -40, 30, 30, ASJ_LOOKS_RESOLVED}, {ASJ_GEOMETRY_ACCEPTED, -34, 30, 30, ASJ_LOOKS_LOST},
+                 {ASJ_GEOMETRY_ACCEPTED, -12, 1, 30, ASJ_LOOKS_RESOLVED},  {ASJ_GEOMETRY_ACCEPTED, -12, 30, 1, ASJ_LOOKS_RESOLVED},
                  {ASJ_GEOMETRY_AMBIGUOUS, -40, 1, 1, ASJ_LOOKS_LOST},     {ASJ_GEOMETRY_CHANCE, 0, 1, 1, ASJ_LOOKS_LOST}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
@@ -58,7 +58,7 @@ static void without_matches_a_motion_is_settled(void **state)
         upsampled->geometry.status = cases[k].status;
         upsampled->geometry.log10_nfa = cases[k].log10_nfa;
         assert_int_equal(asj_looks_of(own, upsampled), cases[k].looks);
-        own->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY; /* no motion that could be settled so */
+        own->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY; /* no motion that could be resolved so */
         assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_BY_UPSAMPLED);
         own->match_count = count;
         asj_match_result_free(&own);
@@ -74,7 +74,7 @@ static void an_open_motion_is_found(void **state)
         double sd, log10_nfa; /* times the standard deviation; of the images, where the upsampled ones have -100 */
         asj_looks looks;
     } cases[] = {{1, -90, ASJ_LOOKS_LOST}, {1000, -90, ASJ_LOOKS_BY_UPSAMPLED}, {0, -90, ASJ_LOOKS_BY_UPSAMPLED},
-                 {1, -70, ASJ_LOOKS_SETTLED}};
+                 {1, -70, ASJ_LOOKS_RESOLVED}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
@@ -137,8 +137,8 @@ static void another_look_answers_what_is_open(void **state)
     }
 }
 
-/* Frames match themselves upside down in either look: both telling one such motion settles nothing, an upright one is found. */
-static void what_turns_over_settles_nothing(void **state)
+/* Frames match themselves upside down in either look: both telling one such motion resolves nothing, an upright one is found. */
+static void what_turns_over_resolves_nothing(void **state)
 {
     static const int32_t open[] = {ASJ_GEOMETRY_DEGENERATE, ASJ_GEOMETRY_AMBIGUOUS};
     asj_context *context = ((unit_fixture *)*state)->context;
@@ -146,7 +146,7 @@ static void what_turns_over_settles_nothing(void **state)
     own->geometry = upsampled->geometry;
     for (size_t k = 0; k < UNIT_COUNT(open); k++) {
         own->geometry.status = open[k];
-        assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_SETTLED);
+        assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_RESOLVED);
         change_pose(own, 180, 1);
         change_pose(upsampled, 180, 1);
         assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_LOST);
@@ -159,7 +159,7 @@ static void what_turns_over_settles_nothing(void **state)
 }
 
 /* Images with a rival that is no chance by itself repeat themselves: the upsampled ones must have twice as much evidence. */
-static void what_repeats_is_not_settled(void **state)
+static void what_repeats_is_not_resolved(void **state)
 {
     static const int32_t models[] = {ASJ_GEOMETRY_ESSENTIAL, ASJ_GEOMETRY_FUNDAMENTAL, ASJ_GEOMETRY_HOMOGRAPHY};
     asj_context *context = ((unit_fixture *)*state)->context;
@@ -216,11 +216,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rivals_are_confirmed),
-        cmocka_unit_test(without_matches_a_motion_is_settled),
+        cmocka_unit_test(without_matches_a_motion_is_resolved),
         cmocka_unit_test(an_open_motion_is_found),
         cmocka_unit_test(another_look_answers_what_is_open),
-        cmocka_unit_test(what_turns_over_settles_nothing),
-        cmocka_unit_test(what_repeats_is_not_settled),
+        cmocka_unit_test(what_turns_over_resolves_nothing),
+        cmocka_unit_test(what_repeats_is_not_resolved),
         cmocka_unit_test(a_plane_decides_no_motion),
         cmocka_unit_test(chance_stays_chance),
     };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* A room whose images leave the motion open and have no match: the upsampled ones settle it, where they may be looked at. And which
+/* A room whose images leave the motion open and have no match: the upsampled ones resolve it, where they may be looked at. Which
  * octaves junctions of upsampled images are of. */
 #include "unit_test.h"
 
@@ -53,7 +53,7 @@ static void expect_open(const asj_match_result *r)
     assert_false(r->upsampled);
 }
 
-static void expect_settled(const asj_match_result *r)
+static void expect_resolved(const asj_match_result *r)
 {
     const synth_camera *cameras = seen.pair.cameras;
     double f[9];
@@ -82,14 +82,14 @@ static asj_match_result *match_images(asj_context *context, const asj_match_opti
 }
 
 /* Of no match: `upsample_from` matches are asked of images that have an answer. Unless nobody wants to see them upsampled. */
-static void upsampled_images_settle_it(void **state)
+static void upsampled_images_resolve_it(void **state)
 {
     unit_counter counter = {0};
     asj_context *context = unit_context(&counter, 2);
     asj_match_options options = seen.options;
     (void)state;
     asj_match_result *r = match_images(context, &options, NULL);
-    expect_settled(r);
+    expect_resolved(r);
     assert_true(r->upsampled);
     asj_match_result_free(&r);
     options.upsample_from = 0;
@@ -116,7 +116,7 @@ static void one_octave_leaves_it_open(void **state)
 }
 
 /* The same with junctions of octave -1 in asj_match(). */
-static void junctions_of_octave_minus_one_settle_it(void **state)
+static void junctions_of_octave_minus_one_resolve_it(void **state)
 {
     unit_counter counter = {0};
     asj_context *context = unit_context(&counter, 2);
@@ -132,7 +132,7 @@ static void junctions_of_octave_minus_one_settle_it(void **state)
         assert_int_equal(asj_match(context, &seen.images[0], found[0]->junctions, found[0]->junction_count, &seen.images[1],
                                    found[1]->junctions, found[1]->junction_count, &seen.options, &r), ASJ_OK);
         if (first < 0)
-            expect_settled(r);
+            expect_resolved(r);
         else
             expect_open(r);
         asj_match_result_free(&r);
@@ -171,9 +171,9 @@ static void octaves_are_those_of_the_image(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(upsampled_images_settle_it),
+        cmocka_unit_test(upsampled_images_resolve_it),
         cmocka_unit_test(one_octave_leaves_it_open),
-        cmocka_unit_test(junctions_of_octave_minus_one_settle_it),
+        cmocka_unit_test(junctions_of_octave_minus_one_resolve_it),
         cmocka_unit_test(octaves_are_those_of_the_image),
     };
     return cmocka_run_group_tests(tests, look_at_room, forget_room);
