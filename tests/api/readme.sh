@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The README keeps its word: its first C program builds, runs and prints the corners of the square, the lines that match fit the
-# interface, what it links to is there, and every knob that it names is an option.
+# The README keeps its word: its first C program builds, runs and prints the corners of the square, the lines that match and those
+# that read a file fit the interface, what it links to is there, and every knob that it names is an option.
 # readme.sh README INCLUDE_DIRECTORY STATIC_LIBRARY C COMPILER...
 set -u
 readme=$1 include=$2 library=$3
@@ -22,6 +22,14 @@ block $program > "$work/first.c"
     block $match
     printf '}\n'
 } > "$work/match.c"
+{
+    printf '#include <asj/io.h>\nvoid read_file(asj_context *context, asj_detection *found);\n'
+    printf 'void read_file(asj_context *context, asj_detection *found)\n{\n'
+    block 3
+    printf '}\n'
+} > "$work/read.c"
+grep -q asj_image_file_read "$work/read.c" || { echo 'no image file is read'; exit 1; }
+"$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" -c "$work/read.c" -o "$work/read.o" || exit 1
 "$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" -c "$work/match.c" -o "$work/match.o" || exit 1
 "$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" "$work/first.c" "$library" -pthread -lm -ldl -o "$work/first" ||
     "$@" -std=c99 -I"$include" "$work/first.c" "$library" -lm -ldl -o "$work/first" || exit 1
