@@ -144,14 +144,16 @@ core_alone() {
 # By clang, so that the results and the warnings of another compiler are seen, too.
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code, beside the tests. Of
 # upsampled images one test. Without the tests that must fail, which need no sanitizer, without what devices compute, and without
-# the benchmarks. Lines of the sources are all that reports need to know (-g1). On alternative signal stacks: LLVM, in PoCL, gives
-# the thread that starts it one of its own where the sanitizer's is smaller, which depends on the processor, and when the thread
-# ends the sanitizer unmaps that in place of its own and fails.
+# the benchmarks. Numbers that an integer has no room for are no part of clang's undefined-behaviour sanitizer. Lines of the
+# sources are all that reports need to know (-g1). On alternative signal stacks: LLVM, in PoCL, gives the thread that starts it one
+# of its own where the sanitizer's is smaller, which depends on the processor, and when the thread ends the sanitizer unmaps that in
+# place of its own and fails.
 with_sanitizers() {
     ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}use_sigaltstack=0
     export ASAN_OPTIONS
     (CC=clang CXX=clang++ && export CC CXX && build build-sanitize -Dauto_features=enabled --buildtype=debugoptimized --werror \
-        -Db_sanitize=address,undefined -Db_lundef=false '-Dc_args=-fno-sanitize-recover=undefined -g1' \
+        -Db_sanitize=address,undefined -Db_lundef=false \
+        '-Dc_args=-fsanitize=float-cast-overflow -fno-sanitize-recover=undefined,float-cast-overflow -g1' \
         '-Dcpp_args=-fno-sanitize-recover=undefined -g1') || return 1
     folder=$root/build-sanitize
     logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2 &
