@@ -35,6 +35,13 @@ asj_context *fuzz_context(void);
 typedef asj_status fuzz_set(void *options, const char *key, const char *text);
 void fuzz_options(fuzz_bytes *bytes, size_t count, const asj_option_info *(*row)(size_t), fuzz_set *set, void *options);
 
+/* Options of the two-view geometry from all over their ranges, and a little beyond: cameras, sizes, directions and deviations at
+ * their limits. What bytes do not name stays; at the end of the input all of it does. */
+void fuzz_geometry_options(fuzz_bytes *bytes, asj_geometry_options *options);
+
+/* Checks a geometry that was told: a status that there is, numbers that are finite, a matrix of norm 1 where it is accepted. */
+void fuzz_check_geometry(const asj_geometry *geometry);
+
 /* An image of at most `most` x `most` pixels in any format: shapes and noise. The caller frees image->data. */
 void fuzz_image(fuzz_bytes *bytes, unsigned most, asj_image *image);
 

@@ -76,6 +76,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     make_options(&bytes, &options);
     count = make_candidates(&bytes, list);
+    fuzz_geometry_options(&bytes, &options);
     memset(geometry, 0, sizeof geometry);
     status = asj_geometry_estimate(fuzz_context(), list, count, &options, probabilities[0], &geometry[0]);
     if (status != ASJ_OK) {
@@ -84,10 +85,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     for (i = 0; i < count; i++)
         fuzz_check(probabilities[0][i] >= 0 && probabilities[0][i] <= 1.0000001, "a probability out of range");
-    fuzz_check(geometry[0].status >= ASJ_GEOMETRY_NOT_ASKED && geometry[0].status <= ASJ_GEOMETRY_DEGENERATE, "an unknown status");
-    if (geometry[0].status == ASJ_GEOMETRY_ACCEPTED)
-        for (i = 0; i < 9; i++)
-            fuzz_check(fabs(geometry[0].matrix[i]) <= 1.0000001, "a matrix that is not of norm 1");
+    fuzz_check_geometry(&geometry[0]);
     fuzz_check(asj_geometry_estimate(fuzz_context(), list, count, &options, probabilities[1], &geometry[1]) == ASJ_OK &&
                !memcmp(&geometry[0], &geometry[1], sizeof geometry[0]) &&
                (!count || !memcmp(probabilities[0], probabilities[1], count * sizeof(double))), "another answer the second time");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The matcher: two images of up to 96 x 96 pixels, any options, junctions of any kind, bad ones too. */
+/* The matcher: two images of up to 96 x 96 pixels, any options, junctions of any kind, bad ones too; often with a geometry. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -32,6 +32,16 @@ static size_t make_junctions(fuzz_bytes *bytes, const asj_image *image, asj_junc
     return count;
 }
 
+static void make_geometry(fuzz_bytes *bytes, asj_geometry_options *geometry)
+{
+    const unsigned what = fuzz_byte(bytes);
+    if (what < 64)
+        return;
+    geometry->model = (int32_t)(what % 6); /* 0: none; 5 is refused */
+    geometry->samples = 1 + (int32_t)(fuzz_byte(bytes) % 64);
+    fuzz_geometry_options(bytes, geometry);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_bytes bytes = {data, size};
@@ -53,10 +63,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     for (v = 0; v < 2; v++)
         counts[v] = make_junctions(&bytes, &images[v], junctions[v]);
+    make_geometry(&bytes, &options.geometry);
     status = asj_match(fuzz_context(), &images[0], junctions[0], counts[0], &images[1], junctions[1], counts[1], &options, &result);
     fuzz_check((status == ASJ_OK) == (result != NULL), "a status and a result that do not fit");
     if (result) {
         uint32_t i;
+        fuzz_check_geometry(&result->geometry);
+        fuzz_check(options.geometry.model != ASJ_GEOMETRY_NONE || result->geometry.status == ASJ_GEOMETRY_NOT_ASKED,
+                   "a geometry that nobody asked for");
+        for (i = 0; i < result->rejected_count; i++)
+            fuzz_check(result->rejected[i].l1 < result->l_junction_count1 && result->rejected[i].l2 < result->l_junction_count2,
+                       "a rejected match of nothing");
         for (i = 0; i < result->match_count; i++)
             fuzz_check(result->matches[i].l1 < result->l_junction_count1 && result->matches[i].l2 < result->l_junction_count2 &&
                        result->matches[i].distance == result->matches[i].distance, "a match of nothing");
