@@ -13,13 +13,13 @@ typedef struct asj_residuals {
 
 #define ASJ_FAR 20.0 /* square beyond which the ratio is as good as 0: exp(-10) times the peak of about 1e4 */
 #define ASJ_FAR_PLANAR 34.0
-#define ASJ_SHEAR_SD 0.25
+#define ASJ_SHEAR_SD 0.25 /* of either term of a map's shear */
+
 void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
 void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
 
 /* What a candidate may be: part 0 is anywhere in a geometry without planes or on the plane of a homography, part k on its k-th
- * plane. */
-/* The standard deviation of a location in it, as part of location_sd. */
+ * plane. Its thickness is the standard deviation of a location in it, as part of location_sd. */
 static inline double asj_part_thickness(const asj_two_view *view, int32_t part)
 {
     return part > 0 ? view->thickness[part - 1] : 1;
@@ -29,6 +29,7 @@ static inline int32_t asj_part_is_planar(const asj_two_view *view, int32_t part)
 {
     return view->planar || part > 0;
 }
+
 void asj_part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
 
 /* The largest likelihood ratio of the parts, where all residuals are zero and of the largest size, with their shares; standard
@@ -56,11 +57,13 @@ double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *s
 extern const double asj_size_peaks[2][ASJ_SIZES]; /* of an epipolar geometry, of a homography */
 double asj_part_peak(const asj_two_view *view, int32_t part, const asj_peaks *peaks);
 double asj_part_sum(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *pair, const asj_peaks *peaks);
+
 static inline int32_t asj_part_has_sides(const asj_two_view *view, int32_t part)
 {
     return view->has_motion && !asj_part_is_planar(view, part);
 }
-#define ASJ_BEHIND 0.1
+
+#define ASJ_BEHIND 0.1 /* of twice what chance has: of points of an epipolar line half are in front */
 double asj_side_factor(const asj_two_view *view, const asj_pair *pair);
 
 /* What a residual of this square weighs in a least-squares step, where it has several sizes (asj_peaks.fine). */

@@ -48,17 +48,20 @@ static normal_pair normalise(const asj_pair *c, const asj_camera cameras[2])
 
 /* --- essential --------------------------------------------------------------------------------------------------------------- */
 
-/* The k-th of the three points that a correspondence stands for. */
-static asj_ray_pair point_of(const asj_pair *c, const asj_camera cameras[2], int32_t k)
+void asj_rays_beside(const asj_pair *c, const asj_camera cameras[2], int32_t k, double ray1[3], double ray2[3])
 {
     static const double direction[3][2] = {{1, 0}, {-0.5, 0.8660254037844386}, {-0.5, -0.8660254037844386}};
     const double dx = REACH * direction[k][0], dy = REACH * direction[k][1];
     const double x2 = c->x2 + c->affine[0] * dx + c->affine[1] * dy, y2 = c->y2 + c->affine[2] * dx + c->affine[3] * dy;
+    asj_ray(&cameras[0], c->x1 + dx, c->y1 + dy, ray1);
+    asj_ray(&cameras[1], x2, y2, ray2);
+}
+
+static asj_ray_pair point_of(const asj_pair *c, const asj_camera cameras[2], int32_t k)
+{
     double r1[3], r2[3];
-    asj_ray(&cameras[0], c->x1 + dx, c->y1 + dy, r1);
-    asj_ray(&cameras[1], x2, y2, r2);
-    const asj_ray_pair pair = {r1[0], r1[1], r2[0], r2[1]};
-    return pair;
+    asj_rays_beside(c, cameras, k, r1, r2);
+    return (asj_ray_pair){r1[0], r1[1], r2[0], r2[1]};
 }
 
 /* The motion of an essential matrix that has all points in front; 0 when none has. */

@@ -19,12 +19,12 @@
 #include "planes.h"
 #include "elementary.h"
 #include "evidence.h"
+#include "minimal.h"
 #include "small_matrix.h"
 
 #include <math.h>
 #include <string.h>
 
-#define REACH 12.0  /* px */
 #define MOST_NEAR 160
 #define MOST_PLANE_STARTS 48
 #define PROBABLE 0.2
@@ -175,13 +175,10 @@ static int32_t plane_of(const double rays[9], const double depths[3], double n[3
 
 static int32_t plane_of_one(const asj_model *m, const asj_pair *c, double n[3])
 {
-    static const double direction[3][2] = {{1, 0}, {-0.5, 0.8660254037844386}, {-0.5, -0.8660254037844386}};
     double rays[9], depths[3];
     for (int32_t k = 0; k < 3; k++) {
-        const double dx = REACH * direction[k][0], dy = REACH * direction[k][1];
         double y2[3];
-        asj_ray(&m->cameras[0], c->x1 + dx, c->y1 + dy, rays + 3 * k);
-        asj_ray(&m->cameras[1], c->x2 + c->affine[0] * dx + c->affine[1] * dy, c->y2 + c->affine[2] * dx + c->affine[3] * dy, y2);
+        asj_rays_beside(c, m->cameras, k, rays + 3 * k, y2);
         depths[k] = inverse_depth(m, rays + 3 * k, y2);
     }
     return plane_of(rays, depths, n);
