@@ -161,6 +161,8 @@ def test_files_of_features(tmp_path: Path, pair: tuple[asj.Features, asj.Feature
         (tmp_path / "bad.asjf").write_bytes(bad)
         with pytest.raises(asj.FormatError):
             asj.load_features(tmp_path / "bad.asjf")
+    with pytest.raises(asj.FormatError, match="no features"):
+        asj.load_features("/dev/zero")
     with pytest.raises(FileNotFoundError):
         pair[0].save(tmp_path / "nowhere" / "one.asjf")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.asjf", "one.asjf"]

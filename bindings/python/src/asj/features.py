@@ -18,6 +18,8 @@ from .errors import ArgumentError, FormatError, ImageError, OptionError
 from .options import DETECTOR, MATCHER
 from .output import whole_file
 
+_MAGIC = b"\x89ASJF"  # of a file of features: asj-formats(5)
+
 
 class Features:
     """Junctions of one image, most meaningful first, and what matching needs of it.
@@ -193,7 +195,9 @@ def load_features(path: str | os.PathLike[str]) -> Features:
 
     Damaged files and those of later versions raise FormatError or Error with the cause.
     """
-    return _load(Path(path).read_bytes())
+    with Path(path).open("rb") as file:
+        head = file.peek(len(_MAGIC))[: len(_MAGIC)]  # of another file, which may be long or a device, no more is read
+        return _load(file.read() if head == _MAGIC else head)
 
 
 def _load(data: bytes) -> Features:
