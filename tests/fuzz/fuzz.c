@@ -86,7 +86,7 @@ void fuzz_options(fuzz_bytes *bytes, size_t count, const asj_option_info *(*row)
     }
 }
 
-static size_t pixel_bytes(int32_t format)
+size_t fuzz_pixel_bytes(int32_t format)
 {
     switch (format) {
     case ASJ_FORMAT_GRAY8: return 1;
@@ -122,7 +122,7 @@ void fuzz_image(fuzz_bytes *bytes, unsigned most, asj_image *image)
     image->format = (int32_t)(kind % 7) + 1;
     image->width = (int32_t)(1 + fuzz_byte(bytes) * (most - 1) / 255);
     image->height = (int32_t)(1 + fuzz_byte(bytes) * (most - 1) / 255);
-    pixel = pixel_bytes(image->format);
+    pixel = fuzz_pixel_bytes(image->format);
     size = (size_t)image->width * (size_t)image->height * pixel;
     pixels = calloc(size, 1);
     fuzz_check(pixels != NULL, "no memory");

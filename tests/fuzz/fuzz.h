@@ -44,5 +44,6 @@ void fuzz_check_geometry(const asj_geometry *geometry);
 
 /* An image of at most `most` x `most` pixels in any format: shapes and noise. The caller frees image->data. */
 void fuzz_image(fuzz_bytes *bytes, unsigned most, asj_image *image);
+size_t fuzz_pixel_bytes(int32_t format);
 
 #endif

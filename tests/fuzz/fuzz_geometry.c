@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 16, SIDE = 400 };
+enum { MOST = 40, SIDE = 400 };
 
 static void camera_of(fuzz_bytes *bytes, asj_camera *camera)
 {
@@ -32,7 +32,8 @@ static void make_options(fuzz_bytes *bytes, asj_geometry_options *options)
         options->epsilon = pow(10, -(double)(fuzz_byte(bytes) % 14));
 }
 
-/* x2 = a + (1 + b) x1 + ..., by bytes; every third or so is off by more. */
+/* x2 = a + (1 + b) x1 + ..., by bytes, and for half of them farther along x, as what is nearer to affine cameras; every third or so
+ * is off by more. */
 static size_t make_candidates(fuzz_bytes *bytes, asj_geometry_candidate *list)
 {
     size_t count = fuzz_byte(bytes) % (MOST + 1), i;
@@ -49,6 +50,8 @@ static size_t make_candidates(fuzz_bytes *bytes, asj_geometry_candidate *list)
         w = 1 + map[5] * c->x1 / SIDE * 0.3;
         c->x2 = ((1 + map[0]) * c->x1 + map[1] * c->y1) / w + map[2] * 100;
         c->y2 = (map[3] * c->x1 + (1 + map[4]) * c->y1) / w;
+        if (kind & 128)
+            c->x2 += kind & 63;
         if (kind % 3 == 0) {
             c->x2 += (double)fuzz_byte(bytes) - 128;
             c->y2 += (double)fuzz_byte(bytes) - 128;

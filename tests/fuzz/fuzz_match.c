@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The matcher: two images of up to 96 x 96 pixels, any options, junctions of any kind, bad ones too; often with a geometry. */
+/* The matcher: two images of up to 96 x 96 pixels, often one and a part of it, any options, junctions of any kind, bad ones too, or
+ * those of the detector; often with a geometry. */
 #include "fuzz.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 24 };
+enum { MOST = 64, MOST_MADE = 24 };
 
 static asj_status set(void *options, const char *key, const char *text)
 {
@@ -14,7 +15,7 @@ static asj_status set(void *options, const char *key, const char *text)
 
 static size_t make_junctions(fuzz_bytes *bytes, const asj_image *image, asj_junction *junctions)
 {
-    size_t count = fuzz_byte(bytes) % (MOST + 1), i;
+    size_t count = fuzz_byte(bytes) % (MOST_MADE + 1), i;
     memset(junctions, 0, MOST * sizeof *junctions);
     for (i = 0; i < count; i++) {
         asj_junction *junction = &junctions[i];
@@ -22,7 +23,8 @@ static size_t make_junctions(fuzz_bytes *bytes, const asj_image *image, asj_junc
         junction->x = (float)fuzz_byte(bytes) / 255.0f * (float)image->width;
         junction->y = (float)fuzz_byte(bytes) / 255.0f * (float)image->height;
         junction->scale = (float)(3 + fuzz_byte(bytes) % 12);
-        junction->branch_count = (int32_t)(fuzz_byte(bytes) % 8); /* 0, 1, 6 and 7 are refused */
+        const unsigned branches = fuzz_byte(bytes);
+        junction->branch_count = (int32_t)(branches < 250 ? branches % 6 : 6); /* which is refused */
         for (b = 0; b < junction->branch_count && b < ASJ_MAX_BRANCHES; b++) {
             junction->branches[b].angle = (float)(fuzz_pair(bytes) % 62832) / 10000.0f;
             junction->branches[b].length = (float)fuzz_byte(bytes);
@@ -30,6 +32,34 @@ static size_t make_junctions(fuzz_bytes *bytes, const asj_image *image, asj_junc
         }
     }
     return count;
+}
+
+/* The second image: the first one without some columns and rows. */
+static void show_part(unsigned where, asj_image images[2])
+{
+    const int32_t dx = (int32_t)(where % 8), dy = (int32_t)(where / 8 % 8);
+    const size_t pixel = fuzz_pixel_bytes(images[0].format), row = pixel * (size_t)images[0].width;
+    if (images[0].width <= dx || images[0].height <= dy)
+        return;
+    images[1] = images[0];
+    images[1].data = (const uint8_t *)images[0].data + (size_t)dy * row + (size_t)dx * pixel;
+    images[1].width -= dx;
+    images[1].height -= dy;
+    images[1].stride = (ptrdiff_t)row;
+}
+
+/* Up to MOST junctions of the detector in place of those that the bytes make. */
+static void detect(const asj_image *image, asj_junction *junctions, size_t *count)
+{
+    asj_detect_options options;
+    asj_detection *found = NULL;
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    if (asj_detect(fuzz_context(), image, &options, &found) != ASJ_OK) /* NaN */
+        return;
+    *count = found->junction_count < MOST ? found->junction_count : MOST;
+    if (*count > 0)
+        memcpy(junctions, found->junctions, *count * sizeof *junctions);
+    asj_detection_free(&found);
 }
 
 static void make_geometry(fuzz_bytes *bytes, asj_geometry_options *geometry)
@@ -50,7 +80,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     asj_match_result *result = NULL;
     asj_match_options options;
     asj_image images[2];
+    void *pixels_of[2];
     size_t counts[2], v;
+    unsigned how;
     asj_status status;
 
     asj_match_options_preset(&options, fuzz_byte(&bytes) % 4 == 3 ? ASJ_PRESET_PAPER : ASJ_PRESET_DEFAULT);
@@ -62,7 +94,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         bytes.left -= (bytes.left < 80 ? bytes.left : 80) - pixels.left;
     }
     for (v = 0; v < 2; v++)
+        pixels_of[v] = (void *)(size_t)images[v].data;
+    how = fuzz_byte(&bytes);
+    if (how & 1)
+        show_part(how / 4, images);
+    for (v = 0; v < 2; v++) {
         counts[v] = make_junctions(&bytes, &images[v], junctions[v]);
+        if (how & 2)
+            detect(&images[v], junctions[v], &counts[v]);
+    }
     make_geometry(&bytes, &options.geometry);
     status = asj_match(fuzz_context(), &images[0], junctions[0], counts[0], &images[1], junctions[1], counts[1], &options, &result);
     fuzz_check((status == ASJ_OK) == (result != NULL), "a status and a result that do not fit");
@@ -84,6 +124,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     asj_match_result_free(&result);
     for (v = 0; v < 2; v++)
-        free((void *)(size_t)images[v].data);
+        free(pixels_of[v]);
     return 0;
 }
