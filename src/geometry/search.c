@@ -39,8 +39,8 @@
 #define WIDEST 3.0
 #define FEW_ROUNDS 3
 #define ROUNDS 5
-#define LAST_ROUNDS 12 /* of fundamental matrices, which nothing refines after this: with 5 the order of the last digits decided which
-                        * of two that explain 259 matches as well (glasscaseb) was told */
+#define LAST_ROUNDS 12 /* of fundamental matrices, which nothing refines after this: with 5, of two that explain 259 matches as well
+                        * (glasscaseb), the last digits of samples decided which was told */
 #define LOOSE 2.0
 #define TRIES 20
 #define FLAT_SAMPLES 2
