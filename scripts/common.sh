@@ -143,6 +143,14 @@ need() {
 
 # ---- build folders ----
 
+# set_up FOLDER ARGUMENT...: meson setup, in the folder. Meson asks CMake about the system where it is called, in a subfolder of one
+# name, so two at once would take it from each other.
+set_up() {
+    place=$1
+    shift
+    mkdir -p "$place" && (cd "$place" && meson setup "$@")
+}
+
 # configure FOLDER OPTION...: a build folder with these options. One that this script made with the same options and compilers is
 # kept; one that somebody else made keeps the options not named here; one that cannot be used is made anew.
 configure() {
@@ -154,13 +162,13 @@ configure() {
         return 0
     fi
     if [ -e "$folder/build.ninja" ] && [ ! -e "$folder/.configured" ] &&
-        meson setup --reconfigure "$folder" "$root" "$@" > "$logs/configure-$name.log" 2>&1; then
+        set_up "$folder" --reconfigure "$folder" "$root" "$@" > "$logs/configure-$name.log" 2>&1; then
         return 0
     fi
     if [ -e "$folder" ] && [ ! -d "$folder/meson-private" ] && [ -n "$(ls -A "$folder")" ]; then
         fail "$folder is there and is no build folder of meson: move it away"
     fi
     rm -rf "$folder"
-    logged "configure-$name" meson setup "$folder" "$root" "$@" || return 1
+    logged "configure-$name" set_up "$folder" "$folder" "$root" "$@" || return 1
     printf '%s' "$key" > "$folder/.configured"
 }

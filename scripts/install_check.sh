@@ -7,6 +7,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
+cd "$work" # where meson asks CMake about the system (common.sh)
 strict='-Wall -Wextra -Wpedantic -Wconversion -Wundef -Werror'
 
 install_into() { # NAME OPTION...: not optimized, since it runs for seconds only

@@ -24,7 +24,7 @@ configured() {
     shift
     [ -e "$kept/build.ninja" ] && [ "$(cat "$kept/.options" 2> /dev/null)" = "$*" ] && return 0
     rm -rf "$kept"
-    meson setup "$kept" "$root" --werror "$@" && printf '%s' "$*" > "$kept/.options"
+    mkdir -p "$kept" && (cd "$kept" && meson setup "$kept" "$root" --werror "$@") && printf '%s' "$*" > "$kept/.options"
 }
 
 # The library as a DLL, as the project builds it, with vector instructions and threads; what it exports are the functions of the
