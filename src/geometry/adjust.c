@@ -229,6 +229,7 @@ void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)
         asj_release(memory, s->weights[v]);
     }
     asj_release(memory, s->score.near);
+    asj_release(memory, s->score.ratio);
     asj_release(memory, s->probability);
     asj_release(memory, s->shares);
     asj_release(memory, s->sorted);
@@ -248,12 +249,13 @@ int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_
     }
     const size_t most = (size_t)(set->place_count[0] > set->place_count[1] ? set->place_count[0] : set->place_count[1]);
     s->score.near = asj_allocate(memory, (size_t)set->count + 1, sizeof *s->score.near);
+    s->score.ratio = asj_allocate(memory, (size_t)set->count, sizeof *s->score.ratio);
     s->probability = asj_allocate(memory, (size_t)set->count, sizeof *s->probability);
     s->shares = asj_allocate(memory, most, sizeof *s->shares);
     s->sorted = asj_allocate(memory, most, sizeof *s->sorted);
     s->best = asj_allocate(memory, most, sizeof *s->best);
     s->spots = asj_allocate(memory, 5 * most, sizeof *s->spots);
-    return good && s->score.near && s->probability && s->shares && s->sorted && s->best && s->spots;
+    return good && s->score.near && s->score.ratio && s->probability && s->shares && s->sorted && s->best && s->spots;
 }
 
 void asj_adjust_scratches_free(asj_memory *memory, asj_adjust_scratch *scratches, int32_t threads)

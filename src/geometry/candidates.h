@@ -54,8 +54,8 @@ typedef struct asj_pairs {
     double down[2][3];       /* of either camera, where has_down: the direction that points down in its image */
     double middle[2][2];     /* px: of image 1 and image 2 */
     float *at;               /* near.c: all x1, all y1, x2, y2, from the middles */
-    const struct asj_near_ops *near;
-    const struct asj_ratio_ops *ratio;
+    const struct asj_near_ops *near;   /* near.h */
+    const struct asj_ratio_ops *ratio; /* ratios.h */
     double farthest[4];      /* the largest of each */
     struct asj_watch *watch; /* stop.h; NULL = nobody asks whether to go on */
 } asj_pairs;

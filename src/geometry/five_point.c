@@ -48,7 +48,7 @@ static void add_product21(const double a[10], const double b[4], double out[20])
 /* The ten equations; entry[n] is the n-th entry of E as a polynomial. */
 static void equations(double entry[9][4], double rows[10][20])
 {
-    double square[9][10], trace[10];
+    double square[9][10];
     memset(rows, 0, 10 * sizeof *rows);
     memset(square, 0, sizeof square);
     for (int32_t i = 0; i < 3; i++)
@@ -59,9 +59,9 @@ static void equations(double entry[9][4], double rows[10][20])
                 memcpy(square[3 * k + i], square[3 * i + k], sizeof *square);
         }
     for (int32_t n = 0; n < 10; n++) {
-        trace[n] = square[0][n] + square[4][n] + square[8][n];
+        const double trace = square[0][n] + square[4][n] + square[8][n];
         for (int32_t i = 0; i < 3; i++)
-            square[4 * i][n] -= 0.5 * trace[n];
+            square[4 * i][n] -= 0.5 * trace;
     }
     for (int32_t i = 0; i < 3; i++)
         for (int32_t k = 0; k < 3; k++)

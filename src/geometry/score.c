@@ -14,20 +14,17 @@
 
 #include <string.h>
 
-#define AT_ONCE 64 /* ratios */
-
 double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, double loose, asj_score_scratch *scratch)
 {
     const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
     const double limit = asj_far_limit(set, view, loose);
     int32_t touched[2] = {0, 0};
-    double score[2] = {0, 0}, ratios[AT_ONCE];
+    double score[2] = {0, 0};
     const int32_t near = asj_near(set, count, view, limit, scratch->near);
+    asj_likelihood_ratios(view, set, scratch->near, near, &peaks, scratch->ratio);
     for (int32_t k = 0; k < near; k++) {
         const asj_pair *c = &set->list[scratch->near[k]];
-        if (k % AT_ONCE == 0)
-            asj_likelihood_ratios(view, set, scratch->near + k, near - k < AT_ONCE ? near - k : AT_ONCE, &peaks, ratios);
-        const double ratio = ratios[k % AT_ONCE];
+        const double ratio = scratch->ratio[k];
         if (!(ratio > 0))
             continue;
         for (int32_t v = 0; v < 2; v++) {
@@ -54,14 +51,12 @@ void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double lo
     const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
     const double limit = asj_far_limit(set, view, loose);
     const int32_t near = asj_near(set, set->count, view, limit, scratch->near);
-    double ratios[AT_ONCE];
+    asj_likelihood_ratios(view, set, scratch->near, near, &peaks, scratch->ratio);
     memset(probability, 0, (size_t)set->count * sizeof *probability);
     for (int32_t n = 0; n < near; n++) {
         const uint32_t k = scratch->near[n];
         const asj_pair *c = &set->list[k];
-        if (n % AT_ONCE == 0)
-            asj_likelihood_ratios(view, set, scratch->near + n, near - n < AT_ONCE ? near - n : AT_ONCE, &peaks, ratios);
-        probability[k] = c->prior * ratios[n % AT_ONCE];
+        probability[k] = c->prior * scratch->ratio[n];
         scratch->sum[0][c->place1] += probability[k];
         scratch->sum[1][c->place2] += probability[k];
     }

@@ -10,6 +10,7 @@ typedef struct asj_score_scratch {
     double *sum[2];
     uint32_t *touched[2];
     uint32_t *near; /* one number a candidate, and one more */
+    double *ratio;  /* of each that is near */
 } asj_score_scratch;
 
 /* Log of likelihood with the geometry over likelihood without. Of the first `count` candidates. */

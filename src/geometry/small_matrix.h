@@ -62,8 +62,9 @@ void asj_svd3(const double m[9], double u[9], double s[3], double v[9]);
 /* Eigenvalues, rising, and eigenvectors (columns) of a symmetric n x n matrix, by Jacobi's rotations; n <= ASJ_SMALL. */
 void asj_symmetric_eigen(const double *matrix, int32_t n, double *values, double *vectors);
 
-/* The unit vector v of a positive semidefinite 9 x 9 matrix (overwritten) that makes v' A v least; 0 when there is more than one:
- * the second smallest eigenvalue is as good as 0, too. Far quicker than all of them. */
+/* The unit vector v of a positive semidefinite 9 x 9 matrix that makes v' A v least; 0 when there is more than one: the second
+ * smallest eigenvalue is as good as 0, too. Far quicker than all of them. Of the matrix, which is overwritten, what is on and below
+ * the diagonal is read. Stands in least_vector.c. */
 int32_t asj_least_vector9(double *a, double *vector);
 
 /* Solves the symmetric positive definite system A x = b in place: Cholesky's factor goes into the lower triangle of A, x into b,
