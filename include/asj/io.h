@@ -28,7 +28,8 @@ enum {
     ASJ_EXIF_FOCAL_NONE = 0,    /* there is none */
     ASJ_EXIF_FOCAL_FILM = 1,    /* the focal length of the same view on 35 mm film, in whole mm */
     ASJ_EXIF_FOCAL_PLANE = 2,   /* the focal length, and the resolution on the focal plane */
-    ASJ_EXIF_FOCAL_UNUSABLE = 3 /* the EXIF data are damaged, their focal length cannot be, or the picture was cut since */
+    ASJ_EXIF_FOCAL_UNUSABLE = 3 /* the EXIF data are damaged, their focal length cannot be, or the picture was cut since,
+                                 * or made smaller without their resolution */
 };
 
 /* An image read from a file; it owns its pixels. */

@@ -123,6 +123,10 @@ static void values(void **state)
         {{1, 0, 0, 80, 10, 4, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},
         {{1, 0, 5, 0, 10, 4, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},
         {{1, 35, 0, 0, 0, 0, 4000, 2250}, ASJ_EXIF_FOCAL_UNUSABLE, 0}, /* cut from 16:9 to 4:3 */
+        {{1, 0, 5, 110, 10, 4, 40, 30}, ASJ_EXIF_FOCAL_UNUSABLE, 0},   /* made smaller: a sensor 3.6 mm wide .. */
+        {{1, 0, 18, 80, 10, 4, 40, 30}, ASJ_EXIF_FOCAL_UNUSABLE, 0},   /* .. and one of 5 mm behind a lens of 18 */
+        {{1, 0, 18, 2000, 10, 4, 4000, 3000}, ASJ_EXIF_FOCAL_PLANE, 36}, /* .. but not one of 20 mm */
+        {{1, 35, 18, 80, 10, 4, 40, 30}, ASJ_EXIF_FOCAL_FILM, 35 * 50 / diagonal}, /* of any size */
         {{1, 1, 0, 0, 0, 0, 0, 0}, ASJ_EXIF_FOCAL_UNUSABLE, 0},        /* 175 degrees */
         {{1, 65535, 0, 0, 0, 0, 0, 0}, ASJ_EXIF_FOCAL_UNUSABLE, 0},
         {{1, 0, 4000000000u, 4000000000u, 1, 5, 0, 0}, ASJ_EXIF_FOCAL_UNUSABLE, 0},
