@@ -73,7 +73,7 @@ static int read_file(const char *file, char **text, size_t *size)
         return read_all(stdin, "standard input", text, size);
     FILE *stream = fopen(file, "rb");
     if (!stream) {
-        cli_error("%s: %s", file, strerror(errno));
+        cli_file_error(file, strerror(errno));
         return CLI_FAILED;
     }
     const int result = read_all(stream, file, text, size);

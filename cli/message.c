@@ -52,6 +52,12 @@ void cli_error(const char *format, ...)
     va_end(arguments);
 }
 
+/* A path as messages have it: an empty one could not be seen. */
+static const char *shown(const char *path)
+{
+    return *path ? path : "''";
+}
+
 /* Whether the message begins with the path, which the library has made harmless perhaps, and shortened where it is long. */
 static int tells(const char *message, const char *path)
 {
@@ -64,15 +70,16 @@ static int tells(const char *message, const char *path)
 
 void cli_file_message(const char *path, const char *message, char *text, size_t text_size)
 {
-    snprintf(text, text_size, "%s%s%s", tells(message, path) ? "" : path, tells(message, path) ? "" : ": ", message);
+    const int told = tells(message, shown(path));
+    snprintf(text, text_size, "%s%s%s", told ? "" : shown(path), told ? "" : ": ", message);
 }
 
 void cli_file_error(const char *path, const char *message)
 {
-    if (tells(message, path))
+    if (tells(message, shown(path)))
         cli_error("%s", message);
     else
-        cli_error("%s: %s", path, message);
+        cli_error("%s: %s", shown(path), message);
 }
 
 void cli_note(const char *format, ...)

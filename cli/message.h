@@ -25,7 +25,7 @@ void cli_make_harmless(char *text);
 /* "asj-cli: TEXT" */
 void cli_error(const char *format, ...) CLI_PRINTF(1, 2);
 
-/* "PATH: MESSAGE"; the path is not repeated where the message already starts with it. */
+/* "PATH: MESSAGE", with '' for an empty path; it is not repeated where the message already starts with it. */
 void cli_file_message(const char *path, const char *message, char *text, size_t text_size);
 
 /* The same as an error. */

@@ -16,11 +16,12 @@ asj_message asj_message_start(char *text, size_t size, const char *path)
     return message;
 }
 
-/* Writes "path: ", and of a path that is too long its beginning and its end, in whole characters of UTF-8: what went wrong is worth
- * more than the middle of a name. Returns the length. */
+/* Writes "path: ", of an empty one two quotes, and of one that is too long its beginning and its end, in whole characters of UTF-8:
+ * what went wrong is worth more than the middle of a name. Returns the length. */
 static size_t put_path(char *text, size_t size, const char *path)
 {
     enum { CAUSE = 160 }; /* bytes that stay for it, its end included, or half of a shorter text */
+    path = *path ? path : "''";
     const size_t length = strlen(path), least = size / 2 < CAUSE ? size / 2 : CAUSE;
     const size_t most = size - least > 2 ? size - least - 2 : 0;
     size_t head = most > 3 ? (most - 3) / 2 : 0, tail = length > head ? length - head : length;

@@ -273,6 +273,26 @@ static void a_full_device_is_reported(void **state)
     assert_true(exists("/dev/full"));
 }
 
+static void an_empty_name_is_seen(void **state)
+{
+    (void)state;
+    static const char *const commands[][6] = {{"detect", ""},
+                                              {"detect", "--files-from", ""},
+                                              {"detect", "--mask", "", "good.png"},
+                                              {"match", "good.png", ""},
+                                              {"match", "--junctions2", "", "good.png", "good.png"}};
+    for (size_t c = 0; c < sizeof commands / sizeof commands[0]; c++) {
+        const char *const *a = commands[c];
+        const outcome *result = run_cli(a[0], a[1], a[2], a[3], a[4], a[5], NULL);
+        expect_code(result, 1);
+        assert_int_equal(count_lines(result->err), 1);
+        if (strncmp(result->err, "asj-cli: '': ", 13) != 0)
+            fail_msg("not so: %s", result->err);
+    }
+    const outcome *result = run_cli("detect", "-q", "-f", "jsonl", "", NULL);
+    expect_in(result, result->out, "\"error\":\"'': cannot open: ");
+}
+
 /* `| head` */
 static void a_closed_pipe_fails_without_a_word(void **state)
 {
@@ -336,6 +356,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_long_path_leaves_room_for_the_cause),
         cmocka_unit_test(an_output_folder_is_made_or_refused_before_any_work),
         cmocka_unit_test(a_full_device_is_reported),
+        cmocka_unit_test(an_empty_name_is_seen),
         cmocka_unit_test(a_closed_pipe_fails_without_a_word),
         cmocka_unit_test(a_result_that_does_not_fit_leaves_nothing),
         cmocka_unit_test(an_opencl_device_that_is_not_there_is_an_error),
