@@ -23,7 +23,8 @@ typedef struct asj_message {
 /* An empty line for `path`, so that a caller never reads an old one. */
 asj_message asj_message_start(char *text, size_t size, const char *path);
 
-/* Writes "path: cause", with '' for an empty path, and returns `status`. Control characters, which a hostile file name or file may hold, become '?'. */
+/* Writes "path: cause", with '' for an empty path, and returns `status`. Control characters, which a hostile file name or file may
+ * hold, become '?'. */
 asj_status asj_message_fail(const asj_message *message, asj_status status, const char *format, ...) ASJ_IO_PRINTF(3, 4);
 
 /* ASJ_ERROR_OPTION, with a line that says so, where a reserved field of a report is not zero. */

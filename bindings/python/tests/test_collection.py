@@ -58,6 +58,17 @@ def test_names_and_pairs(photographs: Path, tmp_path: Path) -> None:
         listed.write_text(text)
         with pytest.raises(ValueError, match=why):
             read_pairs(listed, names)
+    listed.write_text("a.png b.png\r\n", encoding="utf-8-sig")  # an editor on Windows
+    assert read_pairs(listed, names) == [("a.png", "b.png")]
+    listed.write_bytes(b"a.png b\xff.png\n")
+    with pytest.raises(ValueError, match="pairs.txt: no list of pairs: not UTF-8"):
+        read_pairs(listed, names)
+
+
+def test_a_list_of_pairs_that_never_ends(photographs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["collect", str(photographs), "--limap", str(photographs / "limap"), "--pairs", "/dev/zero"]
+    assert main(words) == 2
+    assert "/dev/zero: no list of pairs: a line of more than 65535 characters" in capsys.readouterr().err
 
 
 def test_what_is_left_out_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -119,6 +119,28 @@ def test_floats_need_a_white() -> None:
     assert corners(asj.detect(bright / 255 * 1.1, preset="default")) == CORNERS
 
 
+def test_floats_beyond_single_precision() -> None:
+    """Finite ones are cut at white as others are, without a warning of numpy."""
+    for sample, type_ in ((1e300, np.float64), (-1e300, np.float64), (1e39, np.longdouble)):
+        image = (square() / 255).astype(type_)
+        image[100, 100] = sample
+        for pixels in (image, np.stack([image] * 3, 2)):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                found = corners(asj.detect(pixels, white=1, preset="default"))
+                assert all(corner in found for corner in CORNERS)
+                if sample > 0:
+                    with pytest.raises(asj.ImageError, match="white=255"):
+                        asj.detect(pixels)
+
+
+@pytest.mark.parametrize("shape", [(1 << 20, 1 << 20), (1, 1 << 31), (1 << 31, 1), (1 << 15, (1 << 14) + 1, 3)])
+@pytest.mark.parametrize("type_", [np.uint8, np.float64])
+def test_too_many_pixels_are_not_copied(shape: tuple[int, ...], type_: type) -> None:
+    with pytest.raises(asj.LimitError, match="more than the library takes"):
+        asj.detect(np.broadcast_to(type_(0), shape))
+
+
 def test_part_of_the_image() -> None:
     left = [corner for corner in CORNERS if corner[0] < 200]
     allowed = np.zeros((200, 200), bool)

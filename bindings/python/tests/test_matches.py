@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import asj
-import matplotlib
+import matplotlib.pyplot
 import numpy as np
 import pytest
 from asj._native import ffi, lib
@@ -335,3 +335,28 @@ def test_plots(tmp_path: Path, scene: Scene, pair: tuple[asj.Features, asj.Featu
     assert np.array_equal(drawn, -pair[0].branches["log10_nfa"][::-1]) and len(np.unique(drawn)) > len(pair[0])
     with pytest.raises(asj.ImageError, match="pixels"):
         asj.plot("scene.png", pair[0])
+
+
+def test_plots_of_odd_images(scene: Scene, pair: tuple[asj.Features, asj.Features]) -> None:
+    """What detect() takes is shown, without a warning of numpy; what it refuses is refused with its error."""
+    holes = scene / 255
+    holes[:2, :3] = np.nan, np.inf, -np.inf
+    matches = asj.match(*pair)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        plain = asj.plot(scene, pair[0]).images[0].get_array()
+        shown = asj.plot(holes, pair[0]).images[0].get_array()
+        assert np.abs(plain[2:, 3:].astype(int) - shown[2:, 3:]).max() <= 1
+        assert asj.plot(-1 - scene.astype(int), pair[0]).images[0].get_array().max() == 140  # black, which is pale
+        assert np.array_equal(asj.plot(scene[:, :, None], pair[0]).images[0].get_array(), plain)
+        assert asj.plot_matches(scene[:, :, None], scene > 99, matches).images[0].get_array().shape == (360, 960, 3)
+        matplotlib.pyplot.close("all")
+    for bad in (scene[:0], np.stack([scene] * 2, 2), scene[0]):
+        with pytest.raises(asj.ImageError):
+            asj.plot(bad, pair[0])
+        with pytest.raises(asj.ImageError):
+            asj.plot_matches(scene, bad, matches)
+    with pytest.raises(asj.ArgumentError, match="features are wanted, not Matches"):
+        asj.plot(scene, matches)  # type: ignore[arg-type]
+    with pytest.raises(asj.ArgumentError, match="matches are wanted, not Features"):
+        asj.plot_matches(scene, scene, pair[0])  # type: ignore[arg-type]

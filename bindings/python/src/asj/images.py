@@ -41,10 +41,11 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
     pixels = as_array(image)
     if pixels.dtype.kind in "USO":
         raise ImageError(f"not an array of pixels: {image!r:.60}; asj.read_image() reads files")
+    _check_size(pixels)
     if pixels.dtype == np.bool_:
         pixels = pixels.astype(np.uint8) * np.uint8(255)
     if pixels.dtype.kind == "f" and pixels.dtype.itemsize != 4:
-        pixels = pixels.astype(np.float32)
+        pixels = _single(pixels)
     if not pixels.dtype.isnative:
         pixels = pixels.astype(pixels.dtype.newbyteorder("="))
     if pixels.dtype.name not in _GRAY:
@@ -68,6 +69,24 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
     record.white = white
     record.stride = pixels.strides[0] if record.height > 1 else 0  # that of a single row says nothing
     return View(pixels, record, record.width, record.height)
+
+
+def _check_size(pixels: NDArray[Any]) -> None:
+    """Refuses more pixels than the library takes before any is copied: a broadcast array may have more than there is memory for."""
+    if pixels.ndim in (2, 3):
+        height, width = pixels.shape[:2]
+        if max(height, width) > lib.ASJ_MAX_SIDE or height * width > lib.ASJ_MAX_PIXELS:
+            limits = f"side {lib.ASJ_MAX_SIDE}, {lib.ASJ_MAX_PIXELS} pixels in all"
+            raise LimitError(f"{width} x {height} pixels are more than the library takes ({limits})")
+
+
+def _single(pixels: NDArray[Any]) -> NDArray[Any]:
+    """Floats of any size in single precision. What is finite stays so: it is cut at white anyway."""
+    with np.errstate(over="ignore"):
+        single = pixels.astype(np.float32)
+    beyond = np.isinf(single) & np.isfinite(pixels)
+    single[beyond] = np.copysign(np.finfo(np.float32).max, pixels[beyond])
+    return single
 
 
 def _fits(pixels: NDArray[Any]) -> bool:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import ImageError, extra
-from .features import Features
+from .errors import ArgumentError, ImageError, extra
+from .features import Features, expect_features
 from .images import as_array
 from .matches import Matches
 
@@ -60,6 +60,7 @@ def plot(image: ArrayLike, features: Features, axes: Any = None, legend: bool = 
     The image is `pale` and grey, as in asj-cli's plots; otherwise in its own colours, on which dark ones of the branches may be hard to
     see. Returns matplotlib's axes.
     """
+    expect_features(features, "asj.plot(image, asj.detect(image))")
     colours = extra("matplotlib.colors", "plot").LinearSegmentedColormap.from_list("asj", _RAMP)
     pixels = _pixels(image)
     axes = _axes(axes, pixels.shape[1], pixels.shape[0])
@@ -80,6 +81,8 @@ def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: A
 
     Returns matplotlib's axes.
     """
+    if not isinstance(matches, Matches):
+        raise ArgumentError(f"matches are wanted, not {type(matches).__name__}: asj.plot_matches(image1, image2, asj.match(f1, f2))")
     collection = extra("matplotlib.collections", "plot").LineCollection
     one, two = (_colour(image) for image in (image1, image2))
     canvas = np.full((max(len(one), len(two)), one.shape[1] + two.shape[1], 3), 255, np.uint8)
@@ -123,15 +126,27 @@ def _pale(pixels: Any) -> Any:
 
 
 def _pixels(image: ArrayLike) -> Any:
+    """Of the shapes that asj.detect() takes; HxWx1 as HxW."""
     pixels = as_array(image)
-    if pixels.ndim not in (2, 3) or pixels.dtype.kind not in "uifb":
+    if pixels.ndim == 3 and pixels.shape[2] == 1:
+        pixels = pixels[:, :, 0]
+    if pixels.dtype.kind not in "uifb" or pixels.ndim not in (2, 3) or pixels.shape[2:] not in ((), (3,), (4,)):
         raise ImageError(f"not an array of pixels: {image!r:.60}")
+    if not pixels.size:
+        raise ImageError(f"an image of {pixels.shape[1]} x {pixels.shape[0]} pixels")
     return pixels
 
 
 def _colour(image: ArrayLike) -> Any:
+    """Red, green and blue in bytes. Up to the brightest sample; floats up to 1, or to the brightest above it; of NaN and infinity nothing.
+
+    >>> _colour(np.array([[0.5, np.nan, -1.0]]))[0, :, 0].tolist()
+    [127, 0, 0]
+    """
     pixels = _pixels(image)
     if pixels.dtype != np.uint8:
-        top = float(pixels.max()) or 1.0
-        pixels = (pixels / (top if pixels.dtype.kind != "f" else max(top, 1.0)) * 255).astype(np.uint8)
+        levels = np.where(np.isfinite(pixels), pixels, 0).astype(float)
+        top = float(levels.max())
+        top = max(top, 1.0) if pixels.dtype.kind == "f" or top <= 0 else top
+        pixels = np.clip(levels / top * 255, 0, 255).astype(np.uint8)
     return pixels[..., :3] if pixels.ndim == 3 else np.repeat(pixels[:, :, None], 3, 2)

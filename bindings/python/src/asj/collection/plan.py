@@ -6,11 +6,12 @@ from __future__ import annotations
 import os
 import shlex
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 ENDINGS = {".avif", ".bmp", ".heic", ".heif", ".jp2", ".jpeg", ".jpg", ".pgm", ".png", ".pnm", ".ppm", ".tif", ".tiff", ".webp"}
+_LONGEST_LINE = 65536  # two names of a few thousand letters
 _TILE = 16  # images along a side of a tile of pairs: a process keeps that many in memory
 
 
@@ -121,13 +122,25 @@ def _words(line: str) -> list[str]:
     return list(lexer)
 
 
+def _lines(path: Path) -> Iterator[str]:
+    """Lines of a text file, which a device that never ends is none of."""
+    with path.open(encoding="utf-8-sig") as file:  # editors on Windows put a byte order mark before text
+        try:
+            while line := file.readline(_LONGEST_LINE):
+                if len(line) == _LONGEST_LINE and not line.endswith("\n"):
+                    raise ValueError(f"{path}: no list of pairs: a line of more than {_LONGEST_LINE - 1} characters")
+                yield line
+        except UnicodeDecodeError:
+            raise ValueError(f"{path}: no list of pairs: not UTF-8") from None
+
+
 def read_pairs(path: Path, names: Iterable[str]) -> list[tuple[str, str]]:
     """Pairs from a text file, two names a line, those with blanks in double quotes; # begins a comment. Pairs that come twice, or
     turned round, stay once."""
     known = set(names)
     seen: set[frozenset[str]] = set()
     pairs = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+    for number, line in enumerate(_lines(path), 1):
         try:
             words = _words(line)
         except ValueError:
