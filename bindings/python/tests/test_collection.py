@@ -364,6 +364,20 @@ def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.C
         Store.create(done, plan)
 
 
+def test_outputs_without_a_name(photographs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "here" / "below").mkdir(parents=True)
+    for place, word in (("here", "."), ("here/below", "..")):
+        monkeypatch.chdir(tmp_path / place)
+        assert main(["collect", str(photographs), "--limap", word, "--jobs", "1", "--quiet", "--resume"]) == 1
+        assert (tmp_path / "here.work").exists() and (tmp_path / "here" / "images.txt").exists()
+    assert main(["collect", str(photographs), "--limap", "/"]) == 2
+    assert "name the --store" in capsys.readouterr().err
+    for words in (["--limap", ""], ["--limap", "lines", "--pairs", ""]):
+        with pytest.raises(SystemExit, match="2"):
+            main(["collect", str(photographs), *words])
+        assert "an empty path names nothing" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(("table", "column", "begin", "instead", "what"), [
     ("images", "features", 1001, b"", "junctions of a.png"), ("images", "features", 20, b"\xff" * 4, "junctions of a.png"),
     ("pairs", "matches", 101, b"", "matches of a.png and b.png"), ("pairs", "lines", 6, b"", "matches of a.png and b.png"),

@@ -19,30 +19,37 @@ from .collection.run import Dask, Processes
 from .options import DETECTOR, MATCHER
 
 
+def _path(word: str) -> Path:
+    """A path, which an empty word is none of: pathlib takes it for this folder."""
+    if not word:
+        raise argparse.ArgumentTypeError("an empty path names nothing (. is this folder)")
+    return Path(word)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m asj", description=__doc__)
     parser.add_argument("--version", action="version", version=f"asj {__version__}")
     commands = parser.add_subparsers(dest="command", required=True)
     collect = commands.add_parser("collect", help="detect in all images of a folder, match pairs, write files for a reconstruction")
-    collect.add_argument("folder", type=Path, help="images, also in folders below it")
+    collect.add_argument("folder", type=_path, help="images, also in folders below it")
     which = collect.add_mutually_exclusive_group()
     which.add_argument("--all-pairs", action="store_true", help="every pair of images (default)")
     which.add_argument("--sequential", type=int, metavar="N", help="each image with the N images after it, by name")
-    which.add_argument("--pairs", type=Path, metavar="FILE", help="pairs from a file: two names a line, with blanks in double quotes")
+    which.add_argument("--pairs", type=_path, metavar="FILE", help="pairs from a file: two names a line, with blanks in double quotes")
     which.add_argument("--no-pairs", action="store_true", help="junctions alone: no pair is matched")
     outputs = collect.add_argument_group("outputs, at least one")
-    outputs.add_argument("--colmap", type=Path, metavar="FILE.db", help="COLMAP database (needs pycolmap)")
+    outputs.add_argument("--colmap", type=_path, metavar="FILE.db", help="COLMAP database (needs pycolmap)")
     outputs.add_argument(
         "--camera-mode", choices=CAMERA_MODES, default="auto",
         help="COLMAP: which images have one camera, refined as one. auto (default): those whose EXIF data tell the same make, model, focal "
         "length and size, any other image has its own; single: all; per-folder: those of a folder; per-image: none",
     )  # fmt: skip
-    outputs.add_argument("--hdf5", type=Path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")
+    outputs.add_argument("--hdf5", type=_path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")
     outputs.add_argument(
-        "--limap", type=Path, metavar="FOLDER", help="line segments and their matches as LIMAP reads them, matches also as text"
+        "--limap", type=_path, metavar="FOLDER", help="line segments and their matches as LIMAP reads them, matches also as text"
     )
     work = collect.add_argument_group("work")
-    work.add_argument("--store", type=Path, metavar="FILE", help="what has been done so far (default: beside the first output)")
+    work.add_argument("--store", type=_path, metavar="FILE", help="what has been done so far (default: beside the first output)")
     again = work.add_mutually_exclusive_group()
     again.add_argument("--resume", action="store_true", help="go on with the store of a run that ended early")
     again.add_argument(
@@ -203,8 +210,15 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
             raise FileExistsError(f"{path} is there, and is {'a folder' if path.is_dir() else 'no folder'}")
         if not path.absolute().parent.is_dir():
             raise FileNotFoundError(f"{path}: there is no folder {path.absolute().parent}")
-    store: Path | None = arguments.store
-    return store or outputs[0].with_name(outputs[0].name + ".work")
+    return arguments.store or _beside(outputs[0])
+
+
+def _beside(output: Path) -> Path:
+    """Where the store is that nobody has named: of "." and ".." too, which are no names."""
+    named = output if output.name not in ("", "..") else output.resolve()
+    if not named.name:
+        raise ValueError(f"{output}: nothing is beside it: name the --store")
+    return named.with_name(named.name + ".work")
 
 
 def _check_replaced(arguments: argparse.Namespace, store: Path, plan: plans.Plan) -> None:
