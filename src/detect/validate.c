@@ -107,16 +107,27 @@ static void merge(const asj_detect_options *options, const asj_hypothesis *hypot
         }
 }
 
+/* A hypothesis whose branches are asked whether they may be left. */
+typedef struct inquiry {
+    const asj_context *context;
+    const asj_frame *frame;
+    const asj_detect_options *options;
+    asj_hypothesis *hypothesis;
+    asj_strip *strips; /* along each branch, whole: what judge() leaves behind; NULL: the question is another one */
+} inquiry;
+
+/* What is asked of branch `number`, and whether it may be left. */
+typedef int (*question)(const inquiry *about, int32_t number);
+
 /* Whether a strip of some length is meaningful, or nearly so: the angle will still become better. */
-static int may_be_meaningful(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                             const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch, asj_strip *strip)
+static int may_be_meaningful(const inquiry *about, int32_t number)
 {
-    (void)strip;
-    const double limit = log(options->epsilon) + ASJ_EARLY_LOG_NFA;
-    const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LENGTH};
-    const asj_strip_line longer = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LONGER};
-    return asj_strip_passes(context, frame, options, &line, EARLY_SHORTER, limit) ||
-           asj_strip_passes(context, frame, options, &longer, EARLY_SHORTEST, limit);
+    const asj_hypothesis *hypothesis = about->hypothesis;
+    const double angle = hypothesis->branches[number].angle, limit = log(about->options->epsilon) + ASJ_EARLY_LOG_NFA;
+    const asj_strip_line line = {hypothesis->x, hypothesis->y, angle, EARLY_LENGTH};
+    const asj_strip_line longer = {hypothesis->x, hypothesis->y, angle, EARLY_LONGER};
+    return asj_strip_passes(about->context, about->frame, about->options, &line, EARLY_SHORTER, limit) ||
+           asj_strip_passes(about->context, about->frame, about->options, &longer, EARLY_SHORTEST, limit);
 }
 
 static double early_opening(const asj_detect_options *options)
@@ -124,17 +135,13 @@ static double early_opening(const asj_detect_options *options)
     return fmax(options->minimum_opening - EARLY_OPENING, 0) * ASJ_DEGREE;
 }
 
-/* What is asked of a branch, and whether it may be left. The strip along it, whole, is what judge() leaves behind. */
-typedef int (*question)(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                        const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch, asj_strip *strip);
-
 /* Asks the branches, the weakest first, as long as two of those that may be left open by `least` radians; returns whether they
  * do. */
-static int ask_all(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, question ask,
-                   double least, asj_hypothesis *hypothesis, int *answers, asj_strip *strips)
+static int ask_all(const inquiry *about, question ask, double least, int *answers)
 {
+    const asj_hypothesis *hypothesis = about->hypothesis;
     const int32_t count = hypothesis->branch_count;
-    asj_hypothesis_branch *const branches = hypothesis->branches;
+    const asj_hypothesis_branch *branches = hypothesis->branches;
     int32_t order[ASJ_MAX_BRANCHES] = {0};
     for (int32_t i = 0; i < count; i++) {
         int32_t k = i;
@@ -146,7 +153,7 @@ static int ask_all(const asj_context *context, const asj_frame *frame, const asj
         answers[i] = 1;
     int opens = asj_hypothesis_opens(hypothesis, answers, least);
     for (int32_t k = 0; k < count && opens; k++) {
-        answers[order[k]] = ask(context, frame, options, hypothesis, &branches[order[k]], &strips[order[k]]);
+        answers[order[k]] = ask(about, order[k]);
         opens = answers[order[k]] || asj_hypothesis_opens(hypothesis, answers, least);
     }
     return opens;
@@ -156,10 +163,10 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
                       asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
-    asj_strip strips[ASJ_MAX_BRANCHES];
     if (!options->strip_test)
         return;
-    const int opens = ask_all(context, frame, options, may_be_meaningful, early_opening(options), hypothesis, keep, strips);
+    const inquiry about = {context, frame, options, hypothesis, NULL};
+    const int opens = ask_all(&about, may_be_meaningful, early_opening(options), keep);
     asj_hypothesis_select(hypothesis, keep);
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
 }
@@ -173,23 +180,22 @@ static int has_moved_far(const asj_detect_options *options, const asj_hypothesis
 }
 
 /* Whether it seems to reach the junction. Ends of soft edges are uncertain. */
-static int may_reach(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                     const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch, asj_strip *strip)
+static int may_reach(const inquiry *about, int32_t number)
 {
-    const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
-    (void)strip;
-    return branch->width > SOFT ||
-           asj_strip_near_strength(context, frame, options, &line) >= options->near_strength - ORIENTED_STRENGTH;
+    const asj_hypothesis_branch *branch = &about->hypothesis->branches[number];
+    const asj_strip_line line = {about->hypothesis->x, about->hypothesis->y, branch->angle, branch->length};
+    const double least = about->options->near_strength - ORIENTED_STRENGTH;
+    return branch->width > SOFT || asj_strip_near_strength(about->context, about->frame, about->options, &line) >= least;
 }
 
 void asj_reject_oriented(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
-    asj_strip strips[ASJ_MAX_BRANCHES];
     if (!options->strip_test || hypothesis->branch_count < 2) /* those of complete_step.c have one */
         return;
-    const int opens = ask_all(context, frame, options, may_reach, early_opening(options), hypothesis, keep, strips);
+    const inquiry about = {context, frame, options, hypothesis, NULL};
+    const int opens = ask_all(&about, may_reach, early_opening(options), keep);
     asj_hypothesis_select(hypothesis, keep);
     if (!opens || has_moved_far(options, hypothesis, ORIENTED_MOVE))
         hypothesis->branch_count = 0;
@@ -223,6 +229,12 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
         return options->strip_test && frame->octave <= 0 && strip->near_share < LEAST_IMAGE_SHARE ? IF_OTHERS_OPEN : ALONE;
     const int pairs = frame->octave > 0 && (branch->width <= SOFT || asj_blurred_corner_is_sure(hypothesis));
     return pairs && branch->log_nfa <= log_epsilon + 0.5 * log_places(frame) ? WITH_OTHERS : NOT_AT_ALL;
+}
+
+static int judge_one(const inquiry *about, int32_t number)
+{
+    return judge(about->context, about->frame, about->options, about->hypothesis, &about->hypothesis->branches[number],
+                 &about->strips[number]);
 }
 
 /* keep[i] = 0 or 1, from what judge() says: of the branches that are meaningful only WITH_OTHERS those that are so with another
@@ -280,8 +292,8 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
     int keep[ASJ_MAX_BRANCHES], moved = 0;
     asj_strip strips[ASJ_MAX_BRANCHES];
     const int32_t count = hypothesis->branch_count;
-    if (has_moved_far(options, hypothesis, 0) ||
-        !ask_all(context, frame, options, judge, options->minimum_opening * ASJ_DEGREE, hypothesis, keep, strips)) {
+    const inquiry about = {context, frame, options, hypothesis, strips};
+    if (has_moved_far(options, hypothesis, 0) || !ask_all(&about, judge_one, options->minimum_opening * ASJ_DEGREE, keep)) {
         hypothesis->branch_count = 0;
         return;
     }

@@ -44,7 +44,6 @@
 #include "likelihood.h"
 #include "core/angle.h"
 #include "elementary.h"
-#include "labels.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -222,9 +221,8 @@ double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *s
     const double sum = asj_part_sum(view, part, set, c, peaks);
     if (!(sum > 0))
         return 0;
-    const double labels = peaks->named ? asj_label_ratio(peaks->named, c) : 1;
-    const double ratio = labels * asj_part_peak(view, part, peaks) * sum;
-    return asj_part_has_sides(view, part) ? ratio * asj_side_factor(view, c) : ratio;
+    const double side = asj_part_has_sides(view, part) ? asj_side_factor(view, c) : 1;
+    return asj_part_product(peaks, c, asj_part_peak(view, part, peaks), sum, side);
 }
 
 double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks,

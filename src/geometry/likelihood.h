@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_LIKELIHOOD_H
 #define ASJ_SRC_LIKELIHOOD_H
 
-#include "candidates.h"
+#include "labels.h"
 
 /* What a geometry says of one candidate: squared residual in standard deviations, HUGE_VAL where a sign is wrong. */
 typedef struct asj_residuals {
@@ -65,6 +65,13 @@ static inline int32_t asj_part_has_sides(const asj_two_view *view, int32_t part)
 
 #define ASJ_BEHIND 0.1 /* of twice what chance has: of points of an epipolar line half are in front */
 double asj_side_factor(const asj_two_view *view, const asj_pair *pair);
+
+/* Their product, where the sum is above 0; side: 1 where the part has none. */
+static inline double asj_part_product(const asj_peaks *peaks, const asj_pair *pair, double peak, double sum, double side)
+{
+    const double labels = peaks->named ? asj_label_ratio(peaks->named, pair) : 1;
+    return labels * peak * sum * side;
+}
 
 /* What a residual of this square weighs in a least-squares step, where it has several sizes (asj_peaks.fine). */
 double asj_size_weight(double square, int32_t planar);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Every hypothesis is judged by hundreds of candidates that are near it, so what takes time for each of them is an operation. */
 #include "ratios.h"
-#include "labels.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -31,18 +30,14 @@ static void add_part(const asj_ratio_plan *plan, const uint32_t *which, int32_t 
 {
     const double peak = asj_part_peak(plan->view, plan->part, plan->peaks);
     const int32_t has_sides = asj_part_has_sides(plan->view, plan->part);
-    const asj_likely_rotation *named = plan->peaks->named;
     double sums[AT_ONCE], sides[AT_ONCE];
     if (asj_part_is_planar(plan->view, plan->part))
         plan->set->ratio->places(plan, which, count, sums);
     else
         plan->set->ratio->lines(plan, which, count, sums, sides);
-    for (int32_t n = 0; n < count; n++) {
-        if (!(sums[n] > 0))
-            continue;
-        const double labels = named ? asj_label_ratio(named, &plan->set->list[which[n]]) : 1, ratio = labels * peak * sums[n];
-        ratios[n] += has_sides ? ratio * sides[n] : ratio;
-    }
+    for (int32_t n = 0; n < count; n++)
+        if (sums[n] > 0)
+            ratios[n] += asj_part_product(plan->peaks, &plan->set->list[which[n]], peak, sums[n], has_sides ? sides[n] : 1);
 }
 
 void asj_likelihood_ratios(const asj_two_view *view, const asj_pairs *set, const uint32_t *which, int32_t count,
