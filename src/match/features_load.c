@@ -14,6 +14,7 @@
 #include <string.h>
 
 #define MOST_TEXT 65536 /* bytes of options */
+#define SHARING_FROM 1000000 /* bytes of features that share large pages while they are made (core/memory.h) */
 #define LATEST_VERSION                                                                                                       \
     (ASJ_FEATURES_VERSION + ASJ_FEATURES_COLOURS + ASJ_FEATURES_UPSAMPLED + ASJ_FEATURES_UPSAMPLED_COLOURS + ASJ_FEATURES_PICTURE)
 
@@ -263,6 +264,8 @@ static asj_status load(asj_context *context, const uint8_t *bytes, size_t size, 
     asj_made_features made;
     memset(&made, 0, sizeof made);
     asj_status status = read_header(&r);
+    if (status == ASJ_OK && size >= SHARING_FROM && context->memory.sharing == 0) /* else an image has said how */
+        asj_memory_share(&context->memory, 1);
     if (status == ASJ_OK)
         status = read_options(&r, &options);
     if (status != ASJ_OK)
