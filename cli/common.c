@@ -11,9 +11,6 @@
 
 enum { BACKEND, DEVICE, THREADS, SIMD, MAX_MEGAPIXELS, WHITE, TIME, QUIET };
 
-/* The largest image that asj_detect() takes. */
-#define MAX_MEGAPIXELS_LIMIT (ASJ_MAX_PIXELS / 1e6)
-
 #define LEAST_WHITE 1e-6
 
 const cli_option cli_common_options[] = {
@@ -74,9 +71,9 @@ static int take_simd(cli_common *common, const char *text)
 static int take_max_megapixels(cli_common *common, const char *text)
 {
     double number;
-    if (!cli_parse_number(text, 1e-6, MAX_MEGAPIXELS_LIMIT, &number))
-        return cli_usage_error(common->command, "--max-megapixels: '%s' is not a number in 0.000001 .. %.0f", text,
-                               MAX_MEGAPIXELS_LIMIT - 0.5);
+    if (!cli_parse_number(text, 1e-6, ASJ_MAX_PIXELS / 1e6, &number))
+        return cli_usage_error(common->command, "--max-megapixels: '%s' is not a number in 0.000001 .. %d", text,
+                               CLI_LARGEST_MEGAPIXELS);
     common->max_pixels = (uint64_t)(number * 1e6 + 0.5);
     return CLI_SUCCESS;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A photograph as the pale background of a plot, scaled. */
 #include "plot_photo.h"
+#include "pixels.h"
 #include "plot_format.h"
 
 #include <math.h>
@@ -16,17 +17,6 @@ static double white_of(const asj_image *image)
     if (image->white > 0)
         return image->white;
     return image->format == ASJ_FORMAT_GRAY16 ? 65535 : image->format == ASJ_FORMAT_GRAY_FLOAT ? 1 : 255;
-}
-
-static size_t bytes_of(int32_t format)
-{
-    switch (format) {
-    case ASJ_FORMAT_GRAY8: return 1;
-    case ASJ_FORMAT_GRAY16: return 2;
-    case ASJ_FORMAT_RGB8:
-    case ASJ_FORMAT_BGR8: return 3;
-    default: return 4;
-    }
 }
 
 /* BT.601 luma, as the detector takes it, in the unit of the samples. */
@@ -59,14 +49,15 @@ static double sample(const unsigned char *pixel, int32_t format, int channel)
 
 static double block_mean(const asj_image *image, int channel, int32_t left, int32_t top, int32_t reduction)
 {
-    size_t bytes = bytes_of(image->format);
-    ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)((size_t)image->width * bytes);
+    const size_t bytes = cli_pixel_size(image->format);
     int32_t right = image->width - left < reduction ? image->width : left + reduction;
     int32_t bottom = image->height - top < reduction ? image->height : top + reduction;
     double sum = 0;
-    for (int32_t y = top; y < bottom; y++)
-        for (int32_t x = left; x < right; x++)
-            sum += sample((const unsigned char *)image->data + y * stride + (ptrdiff_t)((size_t)x * bytes), image->format, channel);
+    for (int32_t y = top; y < bottom; y++) {
+        const unsigned char *pixel = cli_pixel_at(image, left, y);
+        for (int32_t x = left; x < right; x++, pixel += bytes)
+            sum += sample(pixel, image->format, channel);
+    }
     return sum / ((double)(right - left) * (bottom - top));
 }
 

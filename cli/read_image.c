@@ -2,6 +2,7 @@
 /* Reads images for detect and match. */
 #include "read_image.h"
 #include "message.h"
+#include "pixels.h"
 #include "platform.h"
 
 #include <math.h>
@@ -52,20 +53,14 @@ static const char *find_result(const char *path)
     return strstr(head, "\"asj-matches-1\"") ? "matches, not an image" : NULL;
 }
 
-static size_t pixel_size(int32_t format)
-{
-    return format == ASJ_FORMAT_GRAY8 ? 1 : format == ASJ_FORMAT_GRAY16 ? 2 : format == ASJ_FORMAT_GRAY_FLOAT ? 4 : 3;
-}
-
 int cli_is_uniform(const asj_image *image)
 {
     const unsigned char *first = image->data;
-    const size_t size = pixel_size(image->format), row = size * (size_t)image->width;
-    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)row;
+    const size_t size = cli_pixel_size(image->format), row = size * (size_t)image->width;
     if (!first || memcmp(first, first + size, row - size) != 0) /* each pixel with the next one */
         return 0;
     for (int32_t y = 1; y < image->height; y++)
-        if (memcmp(first, first + y * stride, row) != 0)
+        if (memcmp(first, cli_pixel_at(image, 0, y), row) != 0)
             return 0;
     return 1;
 }
@@ -76,10 +71,9 @@ static uint32_t brightest(const asj_image *image)
     uint16_t level, most = 0;
     if (!image->data || image->format != ASJ_FORMAT_GRAY16)
         return 0;
-    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)sizeof level * image->width;
     for (int32_t y = 0; y < image->height; y++)
         for (int32_t x = 0; x < image->width; x++) {
-            memcpy(&level, (const unsigned char *)image->data + y * stride + (ptrdiff_t)sizeof level * x, sizeof level);
+            memcpy(&level, cli_pixel_at(image, x, y), sizeof level);
             most = level > most ? level : most;
         }
     return most;
@@ -136,11 +130,10 @@ enum { BLOCK = 8 };          /* px; the mean of a block has an eighth of the noi
 /* Means of red - green and blue - green. */
 static void mean_colour(const asj_image *image, int32_t left, int32_t top, double mean[2])
 {
-    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)3 * image->width;
     int32_t sums[2] = {0, 0};
     for (int32_t y = top; y < top + BLOCK; y++)
         for (int32_t x = left; x < left + BLOCK; x++) {
-            const unsigned char *pixel = (const unsigned char *)image->data + y * stride + (ptrdiff_t)3 * x;
+            const unsigned char *pixel = cli_pixel_at(image, x, y);
             sums[0] += pixel[0] - pixel[1];
             sums[1] += pixel[2] - pixel[1];
         }
@@ -183,10 +176,9 @@ double cli_bright_level(const asj_image *image)
     float level, most = 0;
     if (!image->data || image->format != ASJ_FORMAT_GRAY_FLOAT || image->white > 0)
         return 0;
-    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)sizeof level * image->width;
     for (int32_t y = 0; y < image->height; y++)
         for (int32_t x = 0; x < image->width; x++) {
-            memcpy(&level, (const unsigned char *)image->data + y * stride + (ptrdiff_t)sizeof level * x, sizeof level);
+            memcpy(&level, cli_pixel_at(image, x, y), sizeof level);
             brighter += level > 1;
             most = level > most ? level : most;
         }
