@@ -23,6 +23,7 @@ from asj.collection import Plan, Store, StoreError, all_pairs, find_images, read
 from asj.collection.limap import merge
 from asj.collection.locations import of_store
 from asj.features import segments_of
+from asj.output import whole_file
 from PIL import Image
 
 MODULE = [sys.executable, "-m", "asj", "collect"]
@@ -376,6 +377,28 @@ def test_outputs_without_a_name(photographs: Path, tmp_path: Path, capsys: pytes
         with pytest.raises(SystemExit, match="2"):
             main(["collect", str(photographs), *words])
         assert "an empty path names nothing" in capsys.readouterr().err
+
+
+def test_links_to_nothing_are_told(photographs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (photographs / "broken.png").unlink()
+    (photographs / "gone.png").symlink_to(tmp_path / "nowhere.png")
+    (photographs / "notes").symlink_to(tmp_path / "nowhere")
+    assert main(["collect", str(photographs), "--limap", str(tmp_path / "limap"), "--jobs", "1", "--quiet"]) == 1
+    assert capsys.readouterr().out.splitlines()[1:] == ["  gone.png: a link to what is not there"]
+
+
+def test_a_full_disk_is_told_with_the_file(photographs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A limit on the size of files stands in for it, as it does for asj-cli."""
+    resource = pytest.importorskip("resource")
+    words = [*MODULE, str(photographs), "--limap", str(tmp_path / "limap"), "--jobs", "1", "--quiet"]
+    small = subprocess.run(
+        words, capture_output=True, text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+    )
+    assert small.returncode == 2 and f"{tmp_path / 'limap.work'}: " in small.stderr, small.stderr
+    with pytest.raises(OSError, match="full.txt"), whole_file(tmp_path / "full.txt") as temporary:
+        temporary.write_text("")
+        raise OSError(28, "No space left on device")
+    assert not (tmp_path / "full.txt").exists()
 
 
 @pytest.mark.parametrize(("table", "column", "begin", "instead", "what"), [

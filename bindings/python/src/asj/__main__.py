@@ -8,7 +8,7 @@ import contextlib
 import signal
 import sqlite3
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -164,6 +164,7 @@ def _plan(arguments: argparse.Namespace, found: plans.Found) -> plans.Plan:
 def _left_out(found: plans.Found) -> list[str]:
     """Lines about the files that are not looked at."""
     lines = [f"  {name}: its name is not UTF-8, as outputs want it: rename it" for name in found.misnamed]
+    lines += [f"  {name}: a link to what is not there" for name in found.dangling]
     return [*lines, *filter(None, [found.left_out()])]
 
 
@@ -172,11 +173,22 @@ def _progress(what: str, done: int, total: int, left: float) -> None:
     print(f"{what}: {done} of {total}, {left:.0f} s left   ", end=end, file=sys.stderr, flush=True)
 
 
+@contextlib.contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """SQLite tells what is wrong with a file, and not which one that is."""
+    try:
+        yield
+    except sqlite3.Error as bad:
+        raise collection.StoreError(f"{path}: {bad}") from bad
+
+
 def _write(arguments: argparse.Namespace, store: collection.Store) -> None:
     if arguments.colmap:
         from .collection import colmap
 
-        colmap.write(store, arguments.colmap, verify=not arguments.no_verify, threads=arguments.jobs, camera_mode=arguments.camera_mode)
+        with _named(arguments.colmap):
+            verify = not arguments.no_verify
+            colmap.write(store, arguments.colmap, verify=verify, threads=arguments.jobs, camera_mode=arguments.camera_mode)
     if arguments.hdf5:
         from .collection import hdf5
 
@@ -283,11 +295,12 @@ def _collect(arguments: argparse.Namespace) -> int:
             workers = Dask(open_things.enter_context(errors.extra("distributed", "dask").Client(arguments.dask)))
         else:
             workers = Processes(arguments.jobs)
-        store = open_things.enter_context(open_store(place, plan))
-        summary = collection.collect(plan, store, workers, progress)
+        with _named(place):
+            store = open_things.enter_context(open_store(place, plan))
+            summary = collection.collect(plan, store, workers, progress)
         _write(arguments, store)
     print("\n".join([str(summary), *_left_out(found)]))
-    return 1 if summary.failed_images or summary.failed_pairs or found.misnamed else 0
+    return 1 if summary.failed_images or summary.failed_pairs or found.misnamed or found.dangling else 0
 
 
 class _Stopped(KeyboardInterrupt):

@@ -36,8 +36,10 @@ def whole_file(path: Path) -> Iterator[Path]:
         yield temporary
         os.chmod(temporary, stat.S_IMODE(path.stat().st_mode) if path.exists() else 0o666 & ~_MASK)
         os.replace(temporary, path)
-    except BaseException:
+    except BaseException as bad:
         temporary.unlink(missing_ok=True)
+        if isinstance(bad, OSError) and bad.filename is None and bad.errno is not None:  # of a write, which has only a number
+            raise type(bad)(bad.errno, bad.strerror, str(path)) from None
         raise
 
 

@@ -50,6 +50,7 @@ class Found:
     images: list[str]  # names of the image files, sorted, with / between folders
     misnamed: list[str]  # image files whose names are not UTF-8, which no output can have; what is not is written as \x..
     endings: dict[str, int]  # of the other files, in small letters, and how many have it; "" is none
+    dangling: list[str] = field(default_factory=list)  # names of image files that are links to what is not there
 
     def left_out(self) -> str:
         """A line about the other files; empty where there are none.
@@ -66,8 +67,10 @@ def look_in(folder: Path) -> Found:
     """The images below the folder, and what is left out."""
     if not folder.is_dir():
         raise NotADirectoryError(f"{folder} is not a folder")
-    images, misnamed, endings = [], [], Counter[str]()
+    images, misnamed, dangling, endings = [], [], [], Counter[str]()
     for path in folder.rglob("*"):
+        if path.is_symlink() and not path.exists() and path.suffix.lower() in ENDINGS:
+            dangling.append(_printable(path.relative_to(folder).as_posix()))
         if not path.is_file():
             continue
         if path.suffix.lower() not in ENDINGS:
@@ -78,7 +81,7 @@ def look_in(folder: Path) -> Found:
             images.append(name)
         else:
             misnamed.append(_printable(name))
-    return Found(sorted(images), sorted(misnamed), dict(endings))
+    return Found(sorted(images), sorted(misnamed), dict(endings), sorted(dangling))
 
 
 def _printable(name: str) -> str:
