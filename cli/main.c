@@ -7,6 +7,7 @@
 #include "match.h"
 #include "match_arguments.h"
 #include "message.h"
+#include "platform.h"
 #include "plot.h"
 #include "spelling.h"
 
@@ -141,6 +142,7 @@ static int run_command(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    cli_hold_streams();
     if (!check_version())
         return CLI_FAILED;
     cli_interrupt_install();

@@ -15,6 +15,10 @@ int cli_is_terminal(void);
  * A closed pipe and a file beyond the limit of the shell become ordinary write errors. */
 void cli_catch_signals(void (*note)(int number));
 
+/* Standard streams that are closed are held, before any file is opened: one that took the place of standard error would get the
+ * program's messages between its own bytes. What is written to them fails as it does when they are closed. */
+void cli_hold_streams(void);
+
 /* Whether nobody reads standard output any more: a pipe whose reader, `head` for instance, has what it wanted. */
 int cli_output_is_closed(void);
 

@@ -3,6 +3,7 @@
 #define _XOPEN_SOURCE 700
 #include "platform.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <string.h>
@@ -37,6 +38,14 @@ void cli_catch_signals(void (*note)(int number))
     action.sa_flags = 0;
     sigaction(SIGPIPE, &action, NULL);
     sigaction(SIGXFSZ, &action, NULL);
+}
+
+/* Opened for what such a stream is not for. The lowest number that is free is that of the stream. */
+void cli_hold_streams(void)
+{
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
+        if (fcntl(stream, F_GETFD) == -1)
+            (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
 int cli_output_is_closed(void)

@@ -80,8 +80,13 @@ int asj_system_open(const char *path, char **target)
     int file = open_file_of_path(path);
 
     if (file >= 0) {
+        const int mode = fcntl(file, F_GETFL);
         if (file == STDOUT_FILENO)
             fflush(stdout);
+        if (mode >= 0 && (mode & O_ACCMODE) == O_RDONLY) {
+            errno = EBADF; /* as write() has it */
+            return -1;
+        }
         return fcntl(file, F_DUPFD_CLOEXEC, 3);
     }
     if (stat(path, &info)) {

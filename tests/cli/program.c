@@ -91,6 +91,14 @@ static char *read_capture(const char *name, size_t *size)
     return text;
 }
 
+static void put_in_place(posix_spawn_file_actions_t *actions, int file, int stream)
+{
+    if (file >= 0)
+        posix_spawn_file_actions_adddup2(actions, file, stream);
+    else if (file == CLOSED)
+        posix_spawn_file_actions_addclose(actions, stream);
+}
+
 pid_t start_cli(int standard_output, int standard_error, const char *const *arguments)
 {
     char *argv[MOST_ARGUMENTS + 2];
@@ -106,11 +114,9 @@ pid_t start_cli(int standard_output, int standard_error, const char *const *argu
     assert_int_equal(posix_spawn_file_actions_init(&actions), 0);
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 1, capture_path("out"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (standard_output >= 0)
-        posix_spawn_file_actions_adddup2(&actions, standard_output, 1);
+    put_in_place(&actions, standard_output, 1);
     posix_spawn_file_actions_addopen(&actions, 2, capture_path("err"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (standard_error >= 0)
-        posix_spawn_file_actions_adddup2(&actions, standard_error, 2);
+    put_in_place(&actions, standard_error, 2);
     assert_int_equal(posix_spawn(&process, program, &actions, NULL, argv, environ), 0);
     posix_spawn_file_actions_destroy(&actions);
     return process;
@@ -131,7 +137,7 @@ const outcome *finish_cli(pid_t process)
 
 const outcome *run_cli_list(const char *const *arguments)
 {
-    return finish_cli(start_cli(-1, -1, arguments));
+    return finish_cli(start_cli(CAPTURED, CAPTURED, arguments));
 }
 
 static void collect(const char *first, va_list rest, const char *arguments[MOST_ARGUMENTS + 1])
@@ -159,7 +165,7 @@ const outcome *run_cli_to(int standard_output, const char *argument, ...)
     va_start(rest, argument);
     collect(argument, rest, arguments);
     va_end(rest);
-    return finish_cli(start_cli(standard_output, -1, arguments));
+    return finish_cli(start_cli(standard_output, CAPTURED, arguments));
 }
 
 void expect_code(const outcome *result, int code)

@@ -33,7 +33,8 @@ const outcome *run_cli_list(const char *const *arguments);
 /* The same with standard output going to an open file, which stays open. */
 const outcome *run_cli_to(int standard_output, const char *argument, ...);
 
-/* Starts without waiting; finish_cli() waits and gives the outcome. An open file takes the place of a capture; -1 = none. */
+/* Starts without waiting; finish_cli() waits and gives the outcome. An open file may take the place of a capture. */
+enum { CAPTURED = -1, CLOSED = -2 /* as a program without such a stream is started */ };
 pid_t start_cli(int standard_output, int standard_error, const char *const *arguments);
 const outcome *finish_cli(pid_t process);
 

@@ -370,7 +370,7 @@ static void an_interrupt_leaves_only_whole_results(void **state)
     const char *arguments[IMAGES + 4];
     const struct timespec pause = {0, 1000000};
     list_many_images("stopped", arguments);
-    pid_t process = start_cli(-1, -1, arguments);
+    pid_t process = start_cli(CAPTURED, CAPTURED, arguments);
     while (!exists("stopped/link0.asj") && kill(process, 0) == 0)
         nanosleep(&pause, NULL);
     assert_int_equal(kill(process, SIGINT), 0);
@@ -431,7 +431,7 @@ static void progress_is_shown_on_a_terminal(void **state)
         skip();
     }
     list_many_images("watched", arguments);
-    pid_t process = start_cli(-1, end, arguments);
+    pid_t process = start_cli(CAPTURED, end, arguments);
     close(end);
     int seen = sees_progress(terminal, "/500] link");
     kill(process, SIGTERM);
@@ -453,7 +453,7 @@ static void an_interrupt_stops_a_detection_in_the_middle(void **state)
     }
     assert_int_equal(mkdir("middle", 0777), 0);
     write_constant("large.png", 4000, 3000);
-    pid_t process = start_cli(-1, end, arguments);
+    pid_t process = start_cli(CAPTURED, end, arguments);
     close(end);
     if (!sees_progress(terminal, "large.png: ")) {
         expect_code(finish_cli(process), 0);

@@ -369,7 +369,7 @@ static void programs_may_fill_it_at_the_same_time(void **state)
         char name[32];
         snprintf(name, sizeof name, "same-%d.csv", i);
         const char *const arguments[] = {"detect", "-q", "--backend", "opencl", "-o", name, "scene.png", NULL};
-        processes[i] = start_cli(-1, -1, arguments);
+        processes[i] = start_cli(CAPTURED, CAPTURED, arguments);
     }
     for (int i = 0; i < PROGRAMS; i++)
         expect_code(finish_cli(processes[i]), 0);

@@ -177,7 +177,7 @@ static void a_line_is_there_before_the_next_image(void **state)
     (void)state;
     assert_int_equal(mkfifo("later.png", 0666), 0);
     assert_int_equal(pipe(ends), 0);
-    const pid_t process = start_cli(ends[1], -1, arguments);
+    const pid_t process = start_cli(ends[1], CAPTURED, arguments);
     close(ends[1]);
     const int file = wait_at_pipe("later.png");
     while (byte != '\n')
@@ -199,7 +199,7 @@ static void the_file_appears_whole_or_not_at_all(void **state)
     write_bytes("whole/all.jsonl", "old", 3);
     assert_int_equal(mkfifo("later.png", 0666), 0);
     for (int interrupted = 1; interrupted >= 0; interrupted--) {
-        const pid_t process = start_cli(-1, -1, arguments);
+        const pid_t process = start_cli(CAPTURED, CAPTURED, arguments);
         const int file = wait_at_pipe("later.png");
         expect_old();
         if (interrupted)
@@ -257,6 +257,25 @@ static const struct {
     {{"-f", "jsonl"}, "which image?"},
 };
 
+static void no_file_takes_the_place_of_a_closed_stream(void **state)
+{
+    (void)state;
+    static const char *const arguments[] = {"detect", "-o", "closed.jsonl", "scene.png", "crossing.png", NULL};
+    static const char *const to_output[] = {"detect", "-f", "jsonl", "scene.png", NULL};
+    for (int c = 0; c < 3; c++) {
+        expect_code(finish_cli(start_cli(c == 1 ? CAPTURED : CLOSED, c == 0 ? CAPTURED : CLOSED, arguments)), 0);
+        char *text = text_of("closed.jsonl");
+        const char *at = text;
+        for (int line = 0; line < 2; line++)
+            json_decref(next_line(&at));
+        assert_string_equal(at, ""); /* what the program says to people has gone nowhere */
+        free(text);
+    }
+    const outcome *result = finish_cli(start_cli(CLOSED, CAPTURED, to_output));
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: standard output: ");
+}
+
 static void what_makes_no_sense_is_refused(void **state)
 {
     const int files = count_files(".");
@@ -301,6 +320,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_line_is_there_before_the_next_image),
         cmocka_unit_test(the_file_appears_whole_or_not_at_all),
         cmocka_unit_test(lines_that_cannot_be_written_end_the_run),
+        cmocka_unit_test(no_file_takes_the_place_of_a_closed_stream),
         cmocka_unit_test(what_makes_no_sense_is_refused),
         cmocka_unit_test(a_plot_beside_one_line),
     };

@@ -748,7 +748,7 @@ static void an_interrupt_leaves_nothing(void **state)
     write_noise("large.png", 2000, 1500);
     for (long ms = 10; ms < 1000; ms *= 2) {
         const struct timespec pause = {0, ms * 1000000};
-        pid_t process = start_cli(-1, -1, arguments);
+        pid_t process = start_cli(CAPTURED, CAPTURED, arguments);
         nanosleep(&pause, NULL);
         kill(process, SIGINT);
         const outcome *result = finish_cli(process);
