@@ -8,6 +8,8 @@
 
 #include <string.h>
 
+#define LEAST_ROWS 64 /* for a thread */
+
 size_t asj_small_picture_bytes(const asj_small_picture *picture)
 {
     return 3 * (size_t)picture->width * (size_t)picture->height;
@@ -60,23 +62,55 @@ asj_status asj_small_picture_create(asj_context *context, const asj_image *image
         return status;
     asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     const halve_job j = {&channels, picture, &watch};
-    asj_parallel(context, asj_threads_for(context, picture->height, 64), picture->height, 0, halve_rows, &j);
+    asj_parallel(context, asj_threads_for(context, picture->height, LEAST_ROWS), picture->height, 0, halve_rows, &j);
     return asj_watch_end(&watch);
+}
+
+/* Of one channel. */
+typedef struct fill_job {
+    const uint8_t *from;
+    size_t stride, by; /* px: of a row, and of the square that makes a pixel */
+    asj_pyramid *pyramid;
+} fill_job;
+
+static void copy_row(const uint8_t *row, size_t width, uint16_t *to)
+{
+    for (size_t x = 0; x < width; x++)
+        to[x] = (uint16_t)(row[x] * ASJ_GRAY_ONE);
+}
+
+/* Means of squares of by x by pixels, of which `row` is the first row. */
+static void reduce_row(const uint8_t *row, size_t stride, size_t by, size_t width, uint16_t *to)
+{
+    const uint32_t area = (uint32_t)(by * by);
+    for (size_t x = 0; x < width; x++) {
+        uint32_t sum = 0;
+        for (size_t k = 0; k < by; k++)
+            for (size_t n = 0; n < by; n++)
+                sum += row[k * stride + x * by + n];
+        to[x] = (uint16_t)((sum * ASJ_GRAY_ONE + area / 2) / area);
+    }
+}
+
+static void fill_rows(const void *data, const asj_part *part)
+{
+    const fill_job *j = data;
+    const size_t width = (size_t)j->pyramid->width[0];
+    for (size_t y = (size_t)part->first; y < (size_t)part->end; y++) {
+        const uint8_t *row = j->from + y * j->by * j->stride;
+        uint16_t *to = j->pyramid->plane[0] + y * (width + 1);
+        if (j->by == 1)
+            copy_row(row, width, to);
+        else
+            reduce_row(row, j->stride, j->by, width, to);
+    }
 }
 
 void asj_small_picture_fill(asj_context *context, const asj_small_picture *picture, int32_t channel, int32_t reduction,
                             asj_pyramid *pyramid)
 {
-    const size_t stride = (size_t)picture->width, by = (size_t)reduction;
-    const size_t width = (size_t)pyramid->width[0], height = (size_t)pyramid->height[0];
-    const uint8_t *from = picture->level + (size_t)channel * stride * (size_t)picture->height;
-    const uint32_t area = (uint32_t)(by * by);
-    for (size_t y = 0; y < height; y++)
-        for (size_t x = 0; x < width; x++) {
-            uint32_t sum = 0;
-            for (size_t k = 0; k < by * by; k++)
-                sum += from[(y * by + k / by) * stride + x * by + k % by];
-            pyramid->plane[0][y * (width + 1) + x] = (uint16_t)((sum * ASJ_GRAY_ONE + area / 2) / area);
-        }
+    const size_t stride = (size_t)picture->width;
+    const fill_job j = {picture->level + (size_t)channel * stride * (size_t)picture->height, stride, (size_t)reduction, pyramid};
+    asj_parallel(context, asj_threads_for(context, pyramid->height[0], LEAST_ROWS), pyramid->height[0], 0, fill_rows, &j);
     asj_pyramid_complete(context, pyramid);
 }
