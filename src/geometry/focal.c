@@ -7,6 +7,9 @@
  * evidence is followed to longer and shorter focal lengths (focal_profile.c). When that tells the focal length, all motions that
  * there are with it are finalists, as with known cameras.
  *
+ * Where edges do not tell the same one as well, the best motions of the other focal lengths are followed, too. Where one ends
+ * elsewhere with evidence that the best one does not exclude (focal_profile.c), the focal length is not known.
+ *
  * Where a focal length is about known, motions are looked for with that one, which explains much the same matches, and with the one
  * that is likeliest by edges, and followed from there (asj_geometry_options.focal_sd).
  *
@@ -35,6 +38,10 @@ struct asj_focal_search {
     asj_focal_prior prior;
     asj_focal_profile profile;
     asj_model flat; /* the homography with most evidence */
+    asj_model starts[COARSE + 1]; /* the best ones with each focal length that is tried */
+    int32_t start_count, best;
+    asj_focal paths[COARSE + 1]; /* where they lead: first the best one, then, when they are asked, the others */
+    int32_t path_count;
     asj_model finalists[3 * ASJ_FINALISTS];
 };
 
@@ -91,24 +98,94 @@ void asj_focal_search_flat(asj_focal_search *s, const asj_model *flat, int32_t c
             s->flat = flat[k];
 }
 
+static double factor_of(const asj_focal_search *s, const asj_focal *found)
+{
+    return found->model.cameras[0].fx / s->prior.cameras[0].fx;
+}
+
+/* Is there no other focal length with which nearly as much is explained? */
+static int32_t is_alone(const asj_focal_search *s, const asj_focal *found)
+{
+    const double factor = factor_of(s, found), least = found->model.evidence - asj_focal_excludes(found->model.evidence);
+    for (int32_t k = 0; k < s->path_count; k++)
+        if (s->paths[k].model.evidence > least && fabs(log(factor_of(s, &s->paths[k]) / factor)) > ASJ_SAME_FOCAL)
+            return 0;
+    return 1;
+}
+
+/* Does nobody else tell this focal length: nobody who knew it before, and not the edges? */
+static int32_t is_only_witness(const asj_focal_search *s, const asj_focal *found)
+{
+    return found->is_known && !(s->prior.sd > 0) && !asj_focal_has_edges(&s->prior, factor_of(s, found));
+}
+
+static asj_status follow(asj_focal_search *s, const asj_model *start)
+{
+    return asj_focal_follow(&s->profile, start, tells(s, start), &s->paths[s->path_count++]);
+}
+
+/* Where a focal length is told by a motion alone, all others have their say. */
+static asj_status ask_others(asj_focal_search *s, asj_focal *found)
+{
+    const int32_t first = s->path_count == 1; /* they stay */
+    asj_status status = ASJ_OK;
+    if (!is_only_witness(s, found))
+        return ASJ_OK;
+    for (int32_t k = 0; k < s->start_count && first && status == ASJ_OK; k++)
+        if (k != s->best)
+            status = follow(s, &s->starts[k]);
+    found->is_known = is_alone(s, found);
+    return status == ASJ_OK ? asj_focal_turn(&s->profile, factor_of(s, found)) : status;
+}
+
+/* The one with most evidence. */
+static const asj_focal *best_path(const asj_focal_search *s)
+{
+    const asj_focal *best = s->paths;
+    for (int32_t k = 1; k < s->path_count; k++)
+        best = s->paths[k].model.evidence > best->model.evidence ? &s->paths[k] : best;
+    return best;
+}
+
 asj_status asj_find_focal(asj_focal_search *s, const asj_model *flat, int32_t count, asj_focal *found)
 {
-    asj_model best;
+    double factors[COARSE + 1];
+    int32_t tried = 0;
     const int32_t likeliest = asj_likeliest_focal(&s->prior), is_given = s->prior.sd > 0;
+    asj_status status = ASJ_OK;
     memset(found, 0, sizeof *found);
-    memset(&best, 0, sizeof best);
-    best.evidence = found->model.evidence = -HUGE_VAL;
-    asj_status status = is_given ? look_at(s, 1, flat, count, &best) : ASJ_OK;
-    if (likeliest >= 0 && !(is_given && likeliest == s->prior.count / 2) && status == ASJ_OK)
-        status = look_at(s, asj_focal_factor(&s->prior, likeliest), flat, count, &best);
-    for (int32_t k = 0; k < COARSE && !is_given && status == ASJ_OK; k++)
-        status = look_at(s, asj_focal_factor(&s->prior, FIRST + k * APART), flat, count, &best);
-    return status == ASJ_OK && best.evidence > -HUGE_VAL ? asj_focal_follow(&s->profile, &best, tells(s, &best), found) : status;
+    found->model.evidence = -HUGE_VAL;
+    if (is_given)
+        factors[tried++] = 1;
+    if (likeliest >= 0 && !(is_given && likeliest == s->prior.count / 2))
+        factors[tried++] = asj_focal_factor(&s->prior, likeliest);
+    for (int32_t k = 0; k < COARSE && !is_given; k++)
+        factors[tried++] = asj_focal_factor(&s->prior, FIRST + k * APART);
+    for (int32_t k = 0; k < tried && status == ASJ_OK; k++) {
+        asj_model *start = &s->starts[s->start_count];
+        start->evidence = -HUGE_VAL;
+        status = look_at(s, factors[k], flat, count, start);
+        s->start_count += start->evidence > -HUGE_VAL;
+    }
+    for (int32_t k = 1; k < s->start_count; k++)
+        s->best = s->starts[k].evidence > s->starts[s->best].evidence ? k : s->best;
+    if (status == ASJ_OK && s->start_count > 0)
+        status = follow(s, &s->starts[s->best]);
+    if (status != ASJ_OK || s->path_count == 0)
+        return status;
+    *found = s->paths[0];
+    status = ask_others(s, found);
+    if (status != ASJ_OK || best_path(s) == s->paths)
+        return status;
+    *found = *best_path(s);
+    status = ask_others(s, found);
+    return status == ASJ_OK ? asj_focal_turn(&s->profile, factor_of(s, found)) : status;
 }
 
 asj_status asj_find_focal_of(asj_focal_search *s, const asj_model *motion, asj_focal *found)
 {
-    return asj_focal_follow(&s->profile, motion, tells(s, motion), found);
+    const asj_status status = asj_focal_follow(&s->profile, motion, tells(s, motion), found);
+    return status == ASJ_OK ? ask_others(s, found) : status;
 }
 
 /* With which K2^-1 H K1 is most nearly a rotation. */
@@ -155,11 +232,6 @@ asj_status asj_find_focal_of_rotation(asj_focal_search *s, const asj_model *flat
     for (int32_t k = 0; k < count && k < MOST_FLAT && status == ASJ_OK; k++)
         status = look_at_rotation(s, factor_of_rotation(s, &flat[k]), &flat[k], &best);
     return status == ASJ_OK && best.evidence > -HUGE_VAL ? asj_focal_follow(&s->profile, &best, 1, found) : status;
-}
-
-static double factor_of(const asj_focal_search *s, const asj_focal *found)
-{
-    return found->model.cameras[0].fx / s->prior.cameras[0].fx;
 }
 
 asj_status asj_focal_search_turn(asj_focal_search *s, const asj_focal *found)

@@ -29,9 +29,11 @@
 #include "stop.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define SAME 1e-6 /* of a step */
+#define SURE 1.5     /* nats: rooms have 2.3 to 3.8, a facade with peaks at two wrong focal lengths .1 to .8 */
 #define SHORTEST 0.4 /* where nothing is known, */
 #define STEP 0.05    /* .. and so up to 3.99 */
 #define WIDTHS 4     /* standard deviations to either side, where something is, */
@@ -154,6 +156,17 @@ int32_t asj_likeliest_focal(const asj_focal_prior *prior)
         }
     }
     return best;
+}
+
+int32_t asj_focal_has_edges(const asj_focal_prior *prior, double factor)
+{
+    const int32_t likeliest = asj_likeliest_focal(prior);
+    if (likeliest < 0 || !(fabs(log(factor / asj_focal_factor(prior, likeliest))) < ASJ_SAME_FOCAL))
+        return 0;
+    for (int32_t k = 0; k < prior->count; k++)
+        if (abs(k - likeliest) * prior->step > 2 * ASJ_SAME_FOCAL && prior->log_edges[k] > prior->log_edges[likeliest] - SURE)
+            return 0;
+    return 1;
 }
 
 /* Where a factor stands among those of the prior. */

@@ -34,6 +34,12 @@ void asj_focal_cameras(const asj_focal_prior *prior, double factor, asj_camera c
 /* The number of the likeliest factor; -1 when nothing is known. */
 int32_t asj_likeliest_focal(const asj_focal_prior *prior);
 
+/* Two focal lengths that are nearer to each other are one, of log f. */
+#define ASJ_SAME_FOCAL 0.1
+
+/* Do edges tell this one, and no other nearly as well? Then they are a second witness of what candidates tell. */
+int32_t asj_focal_has_edges(const asj_focal_prior *prior, double factor);
+
 /* Log of the density of a factor over the flat one, whatever the rotation. */
 double asj_log_focal_prior(const asj_focal_prior *prior, double factor);
 

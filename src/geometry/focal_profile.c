@@ -13,6 +13,12 @@
  * f open (Sturm 2001: optical axes that are parallel, or that meet at the same distance from both cameras; a plane that is seen
  * frontally) have flat evidence, and so they show, unless edges tell f.
  *
+ * That is so of errors that each match has for itself. Those that locations have in common (a lens that is no pin hole, a wall
+ * that is no plane) move evidence by a part of itself, and of a thousand nats a hundredth is as much as LESS: photographs of
+ * cameras side by side, which leave f open, told it to 1 to 3 % and 25 to 180 % off. So where evidence is beyond RUGGED what
+ * it says of f counts by one over how many times that it is: variances become wider, and other focal lengths are excluded by more
+ * (focal.c), unless edges tell the same f by themselves.
+ *
  * Each step starts from two guesses, and the better one is kept: where the last step leads, and what leaves a plane where it was.
  * The first one alone overshoots where directions have pulled at the last step, and profiles break off. */
 #include "focal_profile.h"
@@ -33,6 +39,7 @@
 #define FEWEST 5 /* steps within LESS of the best */
 #define LESS 10.0
 #define CLOSE 2.0
+#define RUGGED 100.0 /* nats */
 #define KNOWN 0.1
 #define LEAST_SD 0.01
 #define LENS 0.015
@@ -42,6 +49,17 @@
 #define LEAST_SHARE (-3.0) /* below that directions are left out: labels (labels.c) would count in full */
 
 static const double sizes[SIZES] = {0.01, 0.003, 0.001}; /* of log f; the first steps are those of the prior */
+
+/* By what logs of likelihoods are divided. */
+static double temperature_of(double evidence)
+{
+    return fmax(1, evidence / RUGGED);
+}
+
+double asj_focal_excludes(double evidence)
+{
+    return LESS * temperature_of(evidence);
+}
 
 static double factor_of(const asj_focal_profile *p, const asj_model *m)
 {
@@ -239,6 +257,8 @@ static summary summarize(asj_focal_profile *p)
     }
     s.mean = log(factor_of(p, &p->at[REACH])) + first / sum;
     s.variance = fmax(LEAST_VARIANCE, second / sum - first / sum * (first / sum));
+    if (!(p->prior->sd > 0) && !asj_focal_has_edges(p->prior, exp(s.mean)))
+        s.variance *= temperature_of(most);
     s.mean_weight = log(sum * p->step / asj_focal_range(p->prior));
     s.is_cut = p->at[lowest].evidence > most - CLOSE || p->at[highest].evidence > most - CLOSE;
     return s;

@@ -30,6 +30,9 @@ typedef struct asj_focal_profile {
     int32_t has[2 * ASJ_FOCAL_REACH + 1];
 } asj_focal_profile;
 
+/* Nats of evidence by which one focal length excludes another one, where the best one has that much: focal_profile.c. */
+double asj_focal_excludes(double evidence);
+
 /* The set with the directions that edges have at a focal length. profile->status, which is returned, tells when memory fails. */
 asj_status asj_focal_turn(asj_focal_profile *profile, double factor);
 
