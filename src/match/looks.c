@@ -282,8 +282,17 @@ static int32_t is_outdone(const asj_geometry *own, const asj_geometry *upsampled
            upsampled->log10_nfa < times * own->log10_nfa && !agrees_better(own, upsampled);
 }
 
+/* Is a focal length that was found with the motion one that upsampled images with so much more evidence leave open? (A villa: 1865
+ * px, in place of some 507.) */
+static int32_t loses_focal(const asj_geometry *own, const asj_geometry *upsampled)
+{
+    return own->focal_sd > 0 && upsampled->status == ASJ_GEOMETRY_ACCEPTED && !tells_motion(upsampled) &&
+           upsampled->log10_nfa < OUTNUMBERS * own->log10_nfa;
+}
+
 /* The images' accepted geometry stays beside upsampled images that have none, or rivals that do not outdo it, and beside a motion
- * of another kind; one without a motion (a plane, a fundamental matrix) gives way to what the upsampled images accept. */
+ * of another kind; one without a motion (a plane, a fundamental matrix), or with a focal length that is lost, gives way to what the
+ * upsampled images accept. */
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled)
 {
     const asj_geometry *a = &own->geometry, *b = &upsampled->geometry;
@@ -292,7 +301,7 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsa
     if (a->status == ASJ_GEOMETRY_ACCEPTED)
         return accepted && alike ? compare(a, b) :
                is_outdone(a, b) ? ASJ_LOOKS_DISPUTED :
-               accepted && !tells_motion(a) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
+               accepted && (!tells_motion(a) || loses_focal(a, b)) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
     if (repeats(a) && !(accepted && b->log10_nfa < OUTNUMBERS * a->log10_nfa))
         return ASJ_LOOKS_LOST;
     return asj_looks_may_resolve(own) ? look_beyond(own, b) : ASJ_LOOKS_BY_UPSAMPLED;

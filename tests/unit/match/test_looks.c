@@ -195,9 +195,34 @@ static void little_knowledge_decides_nothing(void **state)
     }
 }
 
+/* A focal length that the images have found, and upsampled ones with twice the evidence leave open, is none; one that was given
+ * is. */
+static void focal_lengths_of_little_evidence_are_lost(void **state)
+{
+    static const struct {
+        double focal_sd, upsampled_nfa;
+        int32_t status;
+        asj_looks looks;
+    } cases[] = {{.02, -133, ASJ_GEOMETRY_ACCEPTED, ASJ_LOOKS_BY_UPSAMPLED},
+                 {.02, -131, ASJ_GEOMETRY_ACCEPTED, ASJ_LOOKS_BY_IMAGES},
+                 {0, -133, ASJ_GEOMETRY_ACCEPTED, ASJ_LOOKS_BY_IMAGES},
+                 {.02, -133, ASJ_GEOMETRY_CHANCE, ASJ_LOOKS_BY_IMAGES}};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result own, upsampled;
+        make(&own, ASJ_GEOMETRY_ACCEPTED, -66, 20, .6);
+        own.geometry.focal_sd = cases[k].focal_sd;
+        make(&upsampled, cases[k].status, cases[k].upsampled_nfa, 0, .6);
+        upsampled.geometry.model = ASJ_GEOMETRY_FUNDAMENTAL;
+        upsampled.geometry.has_pose = 0;
+        assert_int_equal(asj_looks_of(&own, &upsampled), cases[k].looks);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(focal_lengths_of_little_evidence_are_lost),
         cmocka_unit_test(pictures_decide_between_poses),
         cmocka_unit_test(what_is_surer_by_far_is_taken),
         cmocka_unit_test(pictures_resolve_what_is_ambiguous),
