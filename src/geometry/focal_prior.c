@@ -33,7 +33,7 @@
 #include <string.h>
 
 #define SAME 1e-6 /* of a step */
-#define SURE 1.5     /* nats: rooms have 2.3 to 3.8, a facade with peaks at two wrong focal lengths .1 to .8 */
+#define SURE 1.5 /* nats by which a peak tells f: rooms have 2.3 to 3.8, a facade with peaks at two wrong ones .1 to .8 */
 #define SHORTEST 0.4 /* where nothing is known, */
 #define STEP 0.05    /* .. and so up to 3.99 */
 #define WIDTHS 4     /* standard deviations to either side, where something is, */

@@ -66,7 +66,8 @@ static inline int32_t asj_part_has_sides(const asj_two_view *view, int32_t part)
 #define ASJ_BEHIND 0.1 /* of twice what chance has: of points of an epipolar line half are in front */
 double asj_side_factor(const asj_two_view *view, const asj_pair *pair);
 
-/* Their product, where the sum is above 0; side: 1 where the part has none. */
+/* The ratio of a part from its factors: that of labels, asj_part_peak(), asj_part_sum(), which is above 0, and asj_side_factor(), 1
+ * where the part has no sides. */
 static inline double asj_part_product(const asj_peaks *peaks, const asj_pair *pair, double peak, double sum, double side)
 {
     const double labels = peaks->named ? asj_label_ratio(peaks->named, pair) : 1;

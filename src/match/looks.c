@@ -2,7 +2,8 @@
 /* Two looks at the same images, two estimates of their geometry, and one answer.
  *
  * Poses are two witnesses of one motion. The rules, in the order in which they are asked; each stands in full above its code:
- *   - What only one of the two looks can tell is told by that one.                                             asj_looks_of()
+ *   - What only one of the two looks can tell is told by that one, but for a focal length that the other one
+ *     leaves open with much more evidence.                                                                     asj_looks_of()
  *   - Of two accepted poses that agree as far as they know the mean is told; the surer one judges.             compare()
  *   - Of two that are at odds pictures decide, then much more evidence, then which one is upside down; or
  *     nothing does.                                                                                            decide()
@@ -36,7 +37,8 @@
 /* Evidence of the upsampled images, or of the colours: */
 #define SURPASSES 1.25 /* times that of the images (98 of 100 pairs whose looks agree have 1.27 and more), */
 #define SURELY (-35)   /* log10 NFA (without it three more of 396 unrelated pairs are accepted, with it one); */
-#define OUTNUMBERS 2.0 /* times that, where either repeats itself (wrong ones have up to 1.7, right ones 2.1 and more); */
+#define OUTNUMBERS 2.0 /* times that, where either repeats itself (wrong ones have up to 1.7, right ones 2.1 and more), or to leave
+                        * a focal length open; */
 #define OUTWEIGHS 2.5  /* times that of an accepted motion, with which it is at odds (a wrong one had 1.6) */
 
 /* Agreement of the pictures: */
